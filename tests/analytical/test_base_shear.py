@@ -104,7 +104,7 @@ def test_block_and_cap_as_one_body_on_soil():
 
 
 @pytest.mark.parametrize("rotation", ["finite", "small"])
-def test_a_stack_coupled(rotation):
+def test_coupled_stack_on_soil(rotation):
     """The ground moves both: the cap's centre sways about the middle of its base."""
     response = run(PADS, CAP, SOIL, restraint="centre", rotation=rotation)
     assert int(response.impact_count) > 0
@@ -114,7 +114,7 @@ def test_a_stack_coupled(rotation):
     assert_newton(response, force_on(response, BLOCK_MASS) + on_cap)
 
 
-def test_a_stack_by_cascade():
+def test_cascade_has_base_shear_of_its_first_stage():
     """What stands on the ground is its first stage: block and cap as one body."""
     response = run(PADS, CAP, SOIL, restraint="centre", coupling="cascade")
     both = BLOCK_MASS + CAP_MASS
@@ -156,7 +156,7 @@ def noise(across, upwards, seed):
 
 
 @pytest.mark.parametrize("rule", ["contact-state", "leading-corner", "centre"])
-def test_in_flight_over_pads_nothing_pushes(rule):
+def test_base_shear_vanishes_in_flight_over_pads(rule):
     response = run(PADS, motion=noise(8.0, 14.0, 5), restraint=rule, block=SQUAT)
     flies = response.contact_state.to_numpy() == 3
     assert flies.sum() > 50
@@ -165,7 +165,7 @@ def test_in_flight_over_pads_nothing_pushes(rule):
     assert np.abs(shear[~flies]).max() > 0.1 * BLOCK_MASS * 9.8
 
 
-def test_while_the_cap_flies_over_soil_nothing_pushes():
+def test_base_shear_vanishes_while_cap_flies_over_soil():
     """But for rounding: the forces between block and cap are taken from each other."""
     upwards = rf.GroundMotion.sine_pulse("25 m/s^2", "3 Hz")
     motion = rf.GroundMotion.sine_pulse("-2 m/s^2", "3 Hz").with_vertical(upwards)
@@ -177,12 +177,12 @@ def test_while_the_cap_flies_over_soil_nothing_pushes():
 
 
 @pytest.mark.parametrize("parts", [(), (PADS,), (SOIL,), (CAP, SOIL), (PADS, CAP, SOIL)])
-def test_at_rest_nothing_pushes(parts):
+def test_base_shear_vanishes_at_rest(parts):
     response = rf.System(BLOCK, *parts).simulate(duration="0.2 s")
     assert np.abs(response.base_shear.to_numpy()).max() <= 1e-9 * BLOCK_MASS
 
 
-def test_a_block_that_rests_on_shaken_ground_moves_with_it():
+def test_base_shear_of_resting_block_is_mass_times_ground_acceleration():
     """Below tan(theta) times gravity a block stands still on rigid ground."""
     response = run(motion=rf.GroundMotion.sine_pulse("2 m/s^2", "1 Hz"))
     assert not response.rotation.any()
@@ -191,7 +191,7 @@ def test_a_block_that_rests_on_shaken_ground_moves_with_it():
     )
 
 
-def test_under_a_constant_acceleration_pads_settle_to_a_static_lean():
+def test_base_shear_on_pads_settles_under_constant_acceleration():
     """The shear is then mass times acceleration, whatever the lean."""
     motion = rf.GroundMotion.from_arrays(([-1.0, -1.0], "m/s^2"), "20 s")
     quiet = rf.TwoSpringSupport(frequency_ratio=20, damping_ratio=1.0)

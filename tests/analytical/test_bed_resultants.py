@@ -139,7 +139,7 @@ def test_resultants_are_exact(count, damping, by_pressure):
 
 @pytest.mark.parametrize("by_pressure", SEPARATIONS)
 @pytest.mark.parametrize("damping", DAMPINGS)
-def test_work_of_the_bed_is_what_its_springs_and_dashpots_take(damping, by_pressure):
+def test_bed_power_equals_stored_and_dissipated_power(damping, by_pressure):
     """dE/dt + dissipated + power on the base = 0; the springs' power by finite differences."""
     bed = make_bed(damping, by_pressure)
     for ends in states(1500, seed=2):
@@ -227,7 +227,7 @@ ALPHAS = (0.0, 1e-15, -1e-15, 1e-9, 3e-3, -0.011, 0.05, -0.3)
 @pytest.mark.parametrize("small", [False, True])
 @pytest.mark.parametrize("by_pressure", SEPARATIONS)
 @pytest.mark.parametrize("alpha", ALPHAS)
-def test_accelerations_of_a_body_are_those_of_its_pressures(alpha, by_pressure, small):
+def test_body_accelerations_follow_from_bed_pressure(alpha, by_pressure, small):
     rng = np.random.default_rng(5)
     for _ in range(60):
         y = SETTLEMENT * rng.normal() * 2.0 - 0.5 * HEIGHT * alpha**2
@@ -248,7 +248,7 @@ def test_accelerations_of_a_body_are_those_of_its_pressures(alpha, by_pressure, 
         assert abs(out[0] - expected) <= size
 
 
-def test_the_resultants_are_continuous_through_the_level_base():
+def test_resultants_are_continuous_at_zero_rotation():
     """No division by the rotation: nothing blows up, nothing jumps, from either side."""
     bed = make_bed(45.0, by_pressure=False)
     for level in (SETTLEMENT, 0.1 * SETTLEMENT, 1e-12):
@@ -262,7 +262,7 @@ def test_the_resultants_are_continuous_through_the_level_base():
 
 @pytest.mark.parametrize("tilt", [0.0, 1e-15, -1e-15])
 @pytest.mark.parametrize("by_pressure", SEPARATIONS)
-def test_a_base_that_grazes_the_bed_bears_nothing(by_pressure, tilt):
+def test_base_that_just_touches_bed_carries_no_force(by_pressure, tilt):
     bed = make_bed(0.0, by_pressure)
     for level in (0.0, -1e-15, -1e-300):
         ends = Ends(level + tilt, level - tilt, 0.2, -0.1)
@@ -275,7 +275,7 @@ def test_a_base_that_grazes_the_bed_bears_nothing(by_pressure, tilt):
 
 @pytest.mark.parametrize("by_pressure", SEPARATIONS)
 @pytest.mark.parametrize("damping", DAMPINGS)
-def test_in_flight_nothing_bears_dissipates_or_is_stored(damping, by_pressure):
+def test_bed_has_no_force_or_energy_in_flight(damping, by_pressure):
     bed = make_bed(damping, by_pressure)
     for ends in (Ends(-1e-300, -0.1, -3.0, -4.0), Ends(-0.2, -0.2, 1.0, 1.0)):
         assert resultants(ends, bed, 1.0, -1.0) == (0.0, 0.0, 0.0)
@@ -285,7 +285,7 @@ def test_in_flight_nothing_bears_dissipates_or_is_stored(damping, by_pressure):
         assert not any(bed.is_held(contact_of(ends), left) for left in (True, False))
 
 
-def test_where_the_springs_alone_hold_both_rules_are_one():
+def test_separation_rules_agree_without_damping():
     for ends in states(500, seed=4):
         one, other = (resultants(ends, make_bed(0.0, rule), 1.1, -1.2) for rule in SEPARATIONS)
         size, power = scales(ends, make_bed(0.0, by_pressure=False))
@@ -294,7 +294,7 @@ def test_where_the_springs_alone_hold_both_rules_are_one():
 
 
 @pytest.mark.parametrize("by_pressure", SEPARATIONS)
-def test_the_mirror_image_bears_the_mirror_image(by_pressure):
+def test_mirrored_state_has_mirrored_resultants(by_pressure):
     bed = make_bed(45.0, by_pressure)
     for ends in states(500, seed=6):
         turned = Ends(ends.u_right, ends.u_left, ends.v_right, ends.v_left)
@@ -309,7 +309,7 @@ def test_the_mirror_image_bears_the_mirror_image(by_pressure):
 # guards -------------------------------------------------------------------------------------------
 
 
-def test_guards_change_as_their_rates_say():
+def test_guard_rates_match_finite_differences():
     rng = np.random.default_rng(8)
     bed = make_bed(45.0, by_pressure=False)
     checked = 0
@@ -368,7 +368,7 @@ COUNTS = np.array([10, 32, 100, 316, 1000, 3162])
 
 @pytest.mark.parametrize("by_pressure", SEPARATIONS)
 @pytest.mark.parametrize(("damping", "order"), [(0.0, 2), (45.0, 1)])
-def test_many_springs_tend_to_the_bed(damping, order, by_pressure):
+def test_discrete_springs_converge_to_bed(damping, order, by_pressure):
     """As 1/N^2 where the pressure ends in zero, as 1/N where dashpots make it end in a step."""
     bed = make_bed(damping, by_pressure)
     levers = (1.3, -1.3)
@@ -386,7 +386,7 @@ def test_many_springs_tend_to_the_bed(damping, order, by_pressure):
     assert (errors[COUNTS == 1000] < {1: 1e-3, 2: 1e-6}[order]).all()
 
 
-def test_many_springs_under_a_whole_base_differ_in_the_moment_alone():
+def test_discrete_springs_in_full_contact_differ_only_in_moment():
     """The midpoint rule is exact for the force; of b^3/3 it misses the share 1/N^2."""
     bed = make_bed(45.0, by_pressure=False)
     ends = Ends(1.4 * SETTLEMENT, 0.6 * SETTLEMENT, 0.01, -0.02)

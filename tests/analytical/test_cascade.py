@@ -187,7 +187,7 @@ def test_the_second_stage_is_the_block_on_its_pads_on_the_moving_cap(rule):
 
 
 @pytest.mark.parametrize("rule", RULES)
-def test_an_initial_rotation_is_given_to_the_second_stage(rule):
+def test_initial_rotation_goes_to_second_stage(rule):
     initial = rf.InitialState(rotation="0.1 rad", angular_velocity="-0.02 rad/s")
     run = {"duration": "4 s", "output_step": "5 ms", "accuracy": "reference", "initial": initial}
     whole = cascade(restraint=rule).simulate(**run)
@@ -204,7 +204,7 @@ def test_an_initial_rotation_is_given_to_the_second_stage(rule):
 # the total ----------------------------------------------------------------------------------------
 
 
-def test_overturning_is_that_of_the_total_rotation():
+def test_total_rotation_decides_overturning():
     """Neither stage reaches theta: their sum does."""
     fine = {"output_step": "0.2 ms", "free_vibration": "2 s", "accuracy": "reference"}
     motion = pulse(-6.5)
@@ -233,7 +233,7 @@ def test_overturning_is_that_of_the_total_rotation():
     assert stopped.angular_velocity_before.values[-1] == pytest.approx(rate, rel=1e-6)
 
 
-def test_after_the_end_nothing_counts_any_more():
+def test_counts_and_durations_stop_at_overturning():
     """What the stages would do after the total has overturned is no part of the run."""
     t = np.arange(401) * 0.01
     across = np.where(t <= 2.0, -9.0 * np.sin(math.pi * t), 0.0)
@@ -265,7 +265,7 @@ def test_both_stages_end_at_the_same_instant(duration):
     assert response.peak_rotation.item() == pytest.approx(last, rel=1e-9)
 
 
-def test_no_run_overturns_before_its_total_does():
+def test_run_that_ends_before_overturning_time_does_not_overturn():
     motion = pulse(-6.5)
     end = cascade().simulate(motion, free_vibration="2 s").overturning_time.item()
     shorter = cascade().simulate(motion, duration=f"{end - 1e-4!r} s")
@@ -273,7 +273,7 @@ def test_no_run_overturns_before_its_total_does():
     assert shorter.time.values[-1] <= end
 
 
-def test_the_peak_is_that_of_the_total_between_the_samples():
+def test_peak_of_total_rotation_is_found_between_samples():
     response = cascade().simulate(pulse(), output_step="0.1 ms", **RUN)
     coarse = cascade().simulate(pulse(), output_step="50 ms", **RUN)
     largest = np.abs(response.rotation.values).max()
@@ -285,7 +285,7 @@ def test_the_peak_is_that_of_the_total_between_the_samples():
 # impulses ---------------------------------------------------------------------------------------
 
 
-def test_events_of_the_soil_give_the_block_no_vertical_impulse():
+def test_soil_events_cause_no_vertical_impulse_on_block():
     """What jumps is the velocity of the cap's top; pads press with forces, their hold along it."""
     soft = rf.WinklerSoil(stiffness="8 MPa", damping="100 kPa*s")
     system = rf.System(block(), pads(), CAP, soft, coupling="cascade")

@@ -38,7 +38,7 @@ def brackets(found, flip, threshold, *, within):
     return below - within <= threshold <= above + within
 
 
-def test_a_rectangular_pulse():
+def test_critical_scale_of_rectangular_pulse():
     for length in (0.5, 1.0, 3.0):  # p t1
         samples = np.full(2, GRAVITY * THETA)
         pulse = rf.GroundMotion.from_arrays((samples, "m/s^2"), f"{length / P!r} s")
@@ -52,7 +52,7 @@ def test_a_rectangular_pulse():
 
 
 @pytest.mark.long
-def test_half_a_sine():
+def test_critical_scale_of_half_sine_pulse():
     for ratio in (1, 4, 10):
         pulse = rf.GroundMotion.half_sine_pulse(UPLIFT, f"{math.pi / (ratio * P)!r} s")
         found = critical(pulse, largest=8.0, bracket_width=1e-9)
@@ -65,7 +65,7 @@ def test_half_a_sine():
     "ratio",
     [next(iter(BANDS)), *(pytest.param(one, marks=pytest.mark.long) for one in list(BANDS)[1:])],
 )
-def test_one_sine_overturns_stands_again_and_overturns_without_impact(ratio):
+def test_one_sine_pulse_has_safe_gap_between_overturning_modes(ratio):
     for lower, upper in BANDS[ratio]:
         threshold = one_sine_threshold(ratio)
         pulse = rf.GroundMotion.sine_pulse(UPLIFT, f"{ratio * P / (2.0 * math.pi)!r} Hz")

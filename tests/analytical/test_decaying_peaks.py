@@ -37,7 +37,7 @@ def times_of(peaks, theta):
         )
     ],
 )
-def test_restitution_of_exact_peaks(restitution, theta, rotation):
+def test_restitution_is_recovered_from_exact_peaks(restitution, theta, rotation):
     system = rigid_block(theta, rotation=rotation)
     for share, signs in itertools.product((0.3, 0.9), (1.0, -1.0)):
         peaks = decayed(share * theta, restitution, 6, theta, rotation)
@@ -50,7 +50,7 @@ def test_restitution_of_exact_peaks(restitution, theta, rotation):
         assert math.isnan(float(found.release_time_error))
 
 
-def test_peaks_with_times():
+def test_restitution_is_recovered_from_peaks_with_times():
     theta, restitution = 0.2, 0.8
     peaks = decayed(0.5 * theta, restitution, 6, theta, "small")
     times = 3.0 + times_of(peaks, theta)
@@ -62,7 +62,7 @@ def test_peaks_with_times():
 
 
 @pytest.mark.long
-def test_intervals_of_peaks_with_noise():
+def test_confidence_intervals_from_noisy_peaks_cover_restitution():
     theta, restitution = 0.2, 0.8
     peaks = decayed(0.5 * theta, restitution, 7, theta, "small")
     times = times_of(peaks, theta)
@@ -80,7 +80,7 @@ def test_intervals_of_peaks_with_noise():
     assert np.mean(inside) >= 0.83
 
 
-def test_an_offset_of_signed_peaks():
+def test_gauge_offset_is_recovered_from_signed_peaks():
     theta, offset = 0.2, 0.004
     peaks = decayed(0.5 * theta, 0.8, 6, theta, "finite") * (-1.0) ** np.arange(6) + offset
     found = rf.fit_free_decay(

@@ -103,7 +103,7 @@ def test_uplift_to_either_side():
 
 
 @pytest.mark.parametrize(("side", "word"), [(LEFT, "left"), (RIGHT, "right")])
-def test_rotations_are_told_over_the_angle_of_their_side(side, word):
+def test_relative_rotation_uses_overturning_angle_of_its_side(side, word):
     uplift = G * math.tan(Corner(side).theta)
     run = scene("rigid ground").simulate(rectangle(-side * 1.3 * uplift, 0.4))
     assert run.overturned.item() == 0
@@ -153,7 +153,7 @@ def test_critical_scales_to_either_side():
             assert found.critical_scale.item() < threshold
 
 
-def test_falling_back_from_the_far_side_overturns_to_the_near_one():
+def test_swing_back_from_far_side_overturns_to_near_side():
     """By energy: a swing from rest at a0, an impact, and a swing up to theta."""
     left, right = Corner(LEFT), Corner(RIGHT)
     needed = (right.p * right.theta / (right.restitution * left.p)) ** 2
@@ -206,7 +206,7 @@ def test_free_rocking():
         np.testing.assert_allclose(before[2:] / before[:-2], kept, rtol=1e-8)
 
 
-def test_the_energy_of_an_impact():
+def test_impact_energy_loss_in_closed_form():
     response = scene("rigid ground").simulate(
         duration="5 s", initial=rf.InitialState(rotation="-0.2 rad"), outputs="energy",
         output_step="1 ms", accuracy="reference",
@@ -226,7 +226,7 @@ def test_the_energy_of_an_impact():
     assert response.potential_energy.values[0] == pytest.approx(barrier, rel=1e-12)
 
 
-def test_a_block_that_lies_on_its_side():
+def test_position_of_fallen_block():
     """Its centre of mass lies as far above the ground as it stood from the corner."""
     for side in (LEFT, RIGHT):
         corner = Corner(side)
@@ -355,7 +355,7 @@ def test_a_base_that_is_too_soft_is_refused():
 
 
 @pytest.mark.parametrize("slope", ["0 deg", "1 deg"])
-def test_runs_and_sweeps_tell_of_the_rotation_at_rest(slope):
+def test_runs_and_sweeps_report_rotation_at_rest(slope):
     pads = rf.TwoSpringSupport(frequency_ratio=20, damping_ratio=0.1)
     motion = rf.GroundMotion.sine_pulse("0.1 m/s^2", "1 Hz")
     leaning = rf.System(BLOCK, pads, inclination=slope)
@@ -390,7 +390,7 @@ def test_moments_vanish_at_rest():
             assert moment[1] == pytest.approx(-WEIGHT * E, rel=1e-13)
 
 
-def test_moments_are_slopes_of_the_energy():
+def test_restoring_moment_is_slope_of_potential_energy():
     for name in ("rigid ground", "pads"):
         for rotation in ("finite", "small"):
             system = scene(name, rotation=rotation)
@@ -439,7 +439,7 @@ def test_reactions_follow_from_newtons_law():
             np.testing.assert_allclose(response.vertical_reaction, shown, atol=1e-9 * mass * G)
 
 
-def test_the_moment_of_the_base_is_that_of_its_pads():
+def test_base_overturning_moment_is_that_of_pad_reactions():
     """Held in the middle, the horizontal reaction has no lever about it."""
     for rotation in ("finite", "small"):
         system = scene("pads", restraint="centre", rotation=rotation)
@@ -451,7 +451,7 @@ def test_the_moment_of_the_base_is_that_of_its_pads():
         )
 
 
-def test_the_moment_of_the_base_is_that_of_the_corner():
+def test_base_overturning_moment_is_that_of_bearing_corner():
     response = scene("rigid ground").simulate(PULSE, free_vibration="1 s", outputs="reaction")
     rotation, state = response.rotation.values, response.contact_state.values
     side = np.select([state == 1, state == 2], [-1.0, 1.0], np.nan)
@@ -464,7 +464,7 @@ def test_the_moment_of_the_base_is_that_of_the_corner():
     )
 
 
-def test_points_of_the_bearing_corner_stand_still():
+def test_bearing_corner_does_not_move():
     points = {"right": ("1.2 m", "0 m"), "left": ("-1.2 m", "0 m"), "top": ("0.37 m", "9.6 m")}
     response = scene("rigid ground").simulate(PULSE, points=points)
     for name, state in (("right", 2), ("left", 1)):
@@ -483,7 +483,7 @@ def test_points_of_the_bearing_corner_stand_still():
 # beginnings and certificates ------------------------------------------------------------------
 
 
-def test_beginnings():
+def test_runs_start_from_rest_rotation_or_initial_state():
     for name in SCENES:
         system = scene(name)
         lean = system.equilibrium().rest_rotation.item()
@@ -509,7 +509,7 @@ def test_beginnings():
         assert early == pytest.approx(whole.right_peak_rotation.item(), rel=1e-6)
 
 
-def test_certificates():
+def test_certified_margin_is_that_of_overturning_side():
     """The margin of a verdict is that of the threshold to the side it overturns to."""
     for side in (LEFT, RIGHT):
         corner = Corner(side)
@@ -526,7 +526,7 @@ def test_certificates():
 
 
 @pytest.mark.filterwarnings("ignore::rockframe.errors.ModelWarning")
-def test_a_restitution_that_gives_energy_is_told():
+def test_restitution_that_adds_energy_is_in_cautions():
     """Landing on the corner farther from the centre of mass at the rate of before gives energy."""
     about_left, about_right = (INERTIA + MASS * (H**2 + s**2) for s in (B + E, B - E))
     most = (about_right / about_left) ** 0.5

@@ -102,7 +102,7 @@ def test_flight_is_a_parabola(start, rule):
     assert response.energy_residual.item() < 1e-12
 
 
-def test_flight_feels_the_ground_only_through_its_own_motion():
+def test_flight_over_accelerating_ground_in_closed_form():
     """Relative to a ground of acceleration (a + s t) the block falls by the double integral."""
     start = (0.02, 0.1, 0.3, 1.0)
     across, upwards = np.array([1.0, 4.0]), np.array([-2.0, 3.0])
@@ -207,7 +207,7 @@ def test_bouncing_flat_on_undamped_pads(restitution, rule):
     assert response.energy_residual.item() < 1e-10
 
 
-def test_without_losses_a_flat_bounce_comes_back_to_its_height():
+def test_lossless_flat_bounce_returns_to_its_height():
     pads = Pads(damping_ratio=0.0)
     height = 0.05
     with pytest.warns(ModelWarning, match="eps_max"):
@@ -221,7 +221,7 @@ def test_without_losses_a_flat_bounce_comes_back_to_its_height():
 
 
 @pytest.mark.parametrize("xi", [0.05, 0.3])
-def test_a_block_leaves_damped_pads_when_they_no_longer_push(xi):
+def test_block_leaves_damped_pads_when_reaction_falls_to_zero(xi):
     """From equilibrium, kicked upwards: the reaction k(delta - y) - c y' falls through zero."""
     pads = Pads(damping_ratio=xi)
     speed = 1.5 * pads.omega_v * pads.delta
@@ -256,7 +256,7 @@ def test_a_block_leaves_damped_pads_when_they_no_longer_push(xi):
 
 @overdamped
 @pytest.mark.parametrize("xi", [0.3, 2.0])
-def test_a_kick_beyond_what_the_dashpots_can_hold_is_flight_at_once(xi):
+def test_kick_above_dashpot_limit_starts_flight_at_once(xi):
     pads = Pads(damping_ratio=xi)
     speed = 1.01 * pads.k * pads.delta / pads.c
     response = thrown(pads, (0.0, 0.0, 0.0, speed), 0.02)
@@ -272,7 +272,7 @@ def test_a_kick_beyond_what_the_dashpots_can_hold_is_flight_at_once(xi):
 
 
 @overdamped
-def test_a_pad_that_catches_up_takes_the_corner_back_without_impact():
+def test_overdamped_pad_regains_contact_without_impact():
     """Overdamped pads lag behind a slow kick, and touch again while the block still rises."""
     pads = Pads(damping_ratio=2.0)
     speed = 1.01 * pads.k * pads.delta / pads.c
@@ -293,7 +293,7 @@ def test_a_pad_that_catches_up_takes_the_corner_back_without_impact():
 
 @pytest.mark.parametrize("rule", RULES)
 @pytest.mark.parametrize("side", [-1.0, 1.0])
-def test_a_start_in_flight_is_beside_that_in_contact(rule, side):
+def test_initial_position_is_continuous_between_contact_and_flight(rule, side):
     """The place of a body let go does not jump as its speed makes it leave its pads."""
     angle, places = side * 0.02, []
     for above in (-1e-9, 1e-9):  # of the end that leads, over its pad
@@ -339,7 +339,7 @@ def dropped(accuracy, restitution, **friction):
         pytest.param({"friction": 0.5}, id="friction", marks=pytest.mark.long),
     ],
 )
-def test_bodies_that_fall_together_land_together(restitution, friction):
+def test_bodies_in_joint_free_fall_land_together(restitution, friction):
     """Without a force between them one bears on any of the corners that touch; all take the blow.
 
     As one body that lands flat they leave again at their own time, and do not turn.
@@ -355,7 +355,7 @@ def test_bodies_that_fall_together_land_together(restitution, friction):
 @pytest.mark.filterwarnings("ignore:.*one of several motions:rockframe.errors.ModelWarning")
 @pytest.mark.parametrize("accuracy", ["fast", "standard"])
 @pytest.mark.parametrize("peak", [-13.0, -21.0])
-def test_bodies_with_friction_leave_where_they_do_without(accuracy, peak):
+def test_separation_time_does_not_depend_on_friction(accuracy, peak):
     """Where nothing presses friction is zero, and stays so: that tells not when it came to it."""
     falls = rf.GroundMotion.from_arrays(
         (np.zeros(4), "m/s^2"), "0.1 s", vertical=(np.array([0.0, peak, peak, peak]), "m/s^2")

@@ -49,7 +49,7 @@ def integrate(slope, size, ground, dt=DT):
     return states
 
 
-def test_an_oscillator_that_is_integrated():
+def test_single_mode_floor_matches_integrated_oscillator():
     for period, damping in ((0.013, 0.02), (0.21, 0.0), (0.9, 0.05), (6.0, 1.0)):
         omega = 2.0 * math.pi / period
 
@@ -113,7 +113,7 @@ def exact(ground, period, damping, dt=DT):
     return found
 
 
-def test_samples_are_those_of_the_exact_recurrence():
+def test_floor_samples_match_exact_recurrence():
     for period in (0.02, 0.08, 0.5, 20.0):
         for damping, share in ((0.0, 1e-12), (0.05, 1e-13), (1.0, 1e-13)):
             floor = motion().through_storeys([f"{period} s"], damping, free_vibration="1 s")
@@ -121,7 +121,7 @@ def test_samples_are_those_of_the_exact_recurrence():
             close(floor.si.horizontal.samples, expected, share)
 
 
-def test_finer_samples_are_of_the_same_floor():
+def test_finer_time_step_gives_same_floor_motion():
     coarse = motion().through_storeys(["0.15 s", "0.04 s"], floor_participations=[1.3, -0.4])
     for step, parts in (("0.0025 s", 4), ("0.0034 s", 3)):
         fine = motion().through_storeys(
@@ -154,7 +154,7 @@ def test_a_harmonic_from_rest_in_closed_form():
     close(floor.samples[: time.size], -2.0 * damping * omega * v - omega**2 * u, 1e-11)
 
 
-def test_a_jump_of_a_pulse_is_a_jump():
+def test_jump_of_pulse_is_resolved_exactly():
     """Under a constant acceleration a floor swings about it, undamped up to twice as high."""
     pulse = rf.GroundMotion.cosine_pulse("1 m/s^2", "0.01 Hz", cycles=1)
     floor = pulse.through_storeys(
@@ -190,7 +190,7 @@ def test_the_spectrum_of_a_floor_is_that_of_an_oscillator_on_an_oscillator():
         assert peak == pytest.approx(highest, rel=2e-4)
 
 
-def test_a_steady_harmonic_is_passed_on_twice():
+def test_transmissibilities_of_floor_and_oscillator_multiply():
     """A long harmonic that fades in: the transmissibilities of floor and oscillator multiply."""
     step, below, above, damping = 0.005, 0.6, 0.35, 0.05
     time = np.arange(12_001) * step
@@ -208,7 +208,7 @@ def test_a_steady_harmonic_is_passed_on_twice():
     assert found == pytest.approx(transmitted(below) * transmitted(above), rel=1e-3)
 
 
-def test_stiff_floors_have_the_motion_of_the_ground_and_soft_ones_none():
+def test_stiff_floors_follow_ground_and_soft_floors_stand_still():
     smooth = np.convolve(NOISE, np.hanning(30), "full")
     for period, rest in (("0 s", 0.0), ("1e-5 s", 1e-4), ("0.001 s", 1e-2)):
         floor = motion(smooth).through_storeys([period], 0.05).si.horizontal.samples
@@ -221,7 +221,7 @@ def test_stiff_floors_have_the_motion_of_the_ground_and_soft_ones_none():
         assert floor.si.peak <= 1.01 * bound < 0.1 * peak
 
 
-def test_floors_answer_in_proportion_and_mirrored():
+def test_floor_motion_is_linear_and_mirrored():
     building = {"storeys": 5, "floor": 3, "period": "0.5 s"}
     one = motion().through_storeys(**building).si.horizontal.samples
     other = motion(NOISE[::-1]).through_storeys(**building).si.horizontal.samples
@@ -231,7 +231,7 @@ def test_floors_answer_in_proportion_and_mirrored():
     assert mirrored.tolist() == (-one).tolist()
 
 
-def test_equal_storeys_have_the_modes_of_their_masses_and_stiffnesses():
+def test_uniform_storeys_match_assembled_masses_and_stiffnesses():
     for storeys in (1, 2, 6, 15):
         mass, stiffness = 80e3, 120e6
         angle = math.pi / (2 * storeys + 1)
@@ -249,7 +249,7 @@ def test_equal_storeys_have_the_modes_of_their_masses_and_stiffnesses():
             close(uniform.si.horizontal.samples, assembled.si.horizontal.samples, 1e-9)
 
 
-def test_modes_that_are_left_out_move_with_the_ground():
+def test_truncated_modes_move_with_ground():
     """The first mode alone misses little where the others are stiff to the motion."""
     smooth = motion(np.convolve(NOISE, np.hanning(40), "full") / 10.0)
     building = {"storeys": 4, "floor": 2, "period": "0.2 s", "time_step": "0.002 s"}
@@ -263,7 +263,7 @@ def test_modes_that_are_left_out_move_with_the_ground():
     assert sorted(errors, reverse=True) == errors
 
 
-def test_free_vibration_is_followed_until_it_has_decayed():
+def test_free_vibration_lasts_until_decay():
     for damping in (0.01, 0.05, 0.3, 1.0):
         pulse = motion([0.0, 1.0, 0.0]).through_storeys(["0.5 s"], damping)
         samples = np.abs(pulse.si.horizontal.samples)

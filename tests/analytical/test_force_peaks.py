@@ -45,7 +45,7 @@ def test_peaks_do_not_depend_on_the_output_step(scene, accuracy):
 
 
 @pytest.mark.parametrize("accuracy", ["standard", pytest.param("fast", marks=pytest.mark.long)])
-def test_peaks_are_those_of_very_fine_samples(scene, accuracy):
+def test_force_peaks_match_finely_sampled_histories(scene, accuracy):
     run = scene.simulate(
         PULSE, duration="1.5 s", output_step="0.05 ms", points=TOP, accuracy=accuracy,
         outputs=("friction_demand",),
@@ -59,7 +59,7 @@ def test_peaks_are_those_of_very_fine_samples(scene, accuracy):
             assert (found <= (1.0 + 1e-3) * seen)[finite].all(), (name, found, seen)
 
 
-def test_peaks_of_sweeps_are_those_of_runs_whatever_the_output_step():
+def test_sweep_peaks_equal_single_run_peaks_for_any_output_step():
     runs = [
         rf.sweep(
             SCENES["pads"], PULSE, scale=[0.6, 1.0], points=TOP, duration="1.5 s",
@@ -74,7 +74,7 @@ def test_peaks_of_sweeps_are_those_of_runs_whatever_the_output_step():
                 np.testing.assert_array_equal(run[name].sel(scale=scale), alone[name])
 
 
-def test_a_jump_of_the_ground_is_seen_from_both_sides():
+def test_force_peak_just_before_end_of_ground_step_is_found():
     """A step of the ground that no sample shows: the force is largest just before it ends."""
     hold = rf.GroundMotion.from_arrays(([0.0, 1.0, 1.0, 1.0], "m/s^2"), "50 ms")
     run = rf.System(BLOCK).simulate(hold, duration="1 s", output_step="0.4 s")
@@ -82,7 +82,7 @@ def test_a_jump_of_the_ground_is_seen_from_both_sides():
     assert run.peak_friction_demand == pytest.approx(1.0 / 9.80665, rel=1e-12)
 
 
-def test_the_table_of_steps_grows(monkeypatch):
+def test_step_table_growth_does_not_change_results(monkeypatch):
     whole = SCENES["pads"].simulate(PULSE, duration="1.5 s", points=TOP)
     monkeypatch.setattr("rockframe.solve.integrate.STEP_ROWS", 1)
     monkeypatch.setattr("rockframe.solve.integrate.STEPS_PER_INTERVAL", 0.0)
@@ -92,7 +92,7 @@ def test_the_table_of_steps_grows(monkeypatch):
 
 @pytest.mark.wide
 @pytest.mark.parametrize("base", [PADS, SOIL], ids=["pads", "bed"])
-def test_peaks_are_not_those_of_friction_that_stops_a_new_held_point(base):
+def test_force_peaks_of_held_base_do_not_depend_on_friction(base):
     """A base that never slips has the forces of one that is held, whatever its friction."""
 
     def peaks(friction):

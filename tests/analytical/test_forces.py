@@ -102,7 +102,7 @@ def test_points_move_with_the_body(response):
         np.testing.assert_allclose(np.hypot(wide, high), 2.0 * B, rtol=1e-14)
 
 
-def test_the_bearing_corner_of_a_block_on_rigid_ground_stands_still():
+def test_bearing_corner_on_rigid_ground_does_not_move():
     response = SCENES["rigid ground"].simulate(PULSE, points=POINTS)
     for name, state in (("right corner", 2), ("left", 1)):
         bears = response.contact_state.values == state
@@ -158,7 +158,7 @@ ON_PADS = {
 
 @pytest.mark.wide
 @pytest.mark.parametrize("where", ON_PADS)
-def test_the_moment_of_the_base_is_that_of_its_pads(where):
+def test_base_overturning_moment_is_that_of_pad_reactions(where):
     """Held in the middle, the horizontal reaction has no lever about it."""
     coupling = "cascade" if "cascade" in where else "coupled"
     system = rf.System(*ON_PADS[where], restraint="centre", coupling=coupling)
@@ -172,7 +172,7 @@ def test_the_moment_of_the_base_is_that_of_its_pads(where):
     np.testing.assert_allclose(response.base_overturning_moment, expected, atol=1e-8 * MASS * G * B)
 
 
-def test_the_pressure_under_the_toe():
+def test_toe_pressure_in_closed_form():
     system = rf.System(BLOCK, rf.WinklerSoil(stiffness="30 MPa", damping_ratio=0))
     response = system.simulate(PULSE, outputs="toe_pressure")
     tilt = response.rotation
@@ -183,7 +183,7 @@ def test_the_pressure_under_the_toe():
     assert float(response.toe_pressure.max()) > 1.5 * MASS * G / (2.0 * B)
 
 
-def test_the_friction_that_a_released_block_needs():
+def test_friction_demand_of_released_block_in_closed_form():
     """Of a rocking block, from the energy that it has at each angle."""
     start, share, theta, radius = 0.15, 0.75, math.atan2(B, H), math.hypot(B, H)
     system = rf.System(BLOCK)
@@ -204,7 +204,7 @@ def test_the_friction_that_a_released_block_needs():
     )
 
 
-def test_the_friction_of_an_impact():
+def test_impulsive_friction_demand_in_closed_form():
     """Momentum about the new corner: J_x/J_y = h (1 - e)/(b (1 + e))."""
     for e in (0.8, 0.9):
         system = rf.System(BLOCK, rf.RigidGround(restitution=e))
@@ -219,7 +219,7 @@ def test_the_friction_of_an_impact():
 
 
 @pytest.mark.parametrize("lean", [0.0, 0.1, -0.2])
-def test_the_friction_of_an_impact_is_along_the_base_that_leans(lean):
+def test_event_impulses_are_resolved_along_tilted_base(lean):
     """As that of forces: along and normal to the cap or to the body below, however they lean."""
     system = rf.System(rf.Stack(BLOCK, BLOCK, interfaces=[PADS]), PADS)
     along, normal = 0.3, 2.0
@@ -237,7 +237,7 @@ def test_the_friction_of_an_impact_is_along_the_base_that_leans(lean):
     np.testing.assert_allclose(np.ravel(found), [MASS * along, MASS * normal], rtol=1e-12)
 
 
-def test_coming_to_rest_is_no_impact():
+def test_rest_event_is_left_out_of_impulsive_friction_demand():
     """The last event of an endless series ends all motion at once, in a ratio of its own."""
     response = rf.System(BLOCK, rf.RigidGround(restitution=0.8)).simulate(
         duration="60 s", initial=rf.InitialState(rotation="0.05 rad")
@@ -248,7 +248,7 @@ def test_coming_to_rest_is_no_impact():
     assert response.peak_impulsive_friction_demand == pytest.approx(expected, rel=1e-8)
 
 
-def test_what_remains_is_told_of_the_whole_run():
+def test_residual_rotation_of_overturned_block():
     motion = rf.GroundMotion.sine_pulse("-20 m/s^2", "1 Hz")
     response = SCENES["rigid ground"].simulate(motion, overturning="continue", duration="20 s")
     assert response.attrs["overturned"]
@@ -259,7 +259,7 @@ def test_what_remains_is_told_of_the_whole_run():
     assert fallen == pytest.approx(B - H, rel=1e-9)
 
 
-def test_peaks_stand_over_all_that_is_shown(response):
+def test_force_peaks_bound_their_histories(response):
     assert response.peak_base_shear >= np.abs(response.base_shear).max()
     assert response.peak_friction_demand >= response.friction_demand.max()
     at = response.peak_friction_demand_time.item()
@@ -268,7 +268,7 @@ def test_peaks_stand_over_all_that_is_shown(response):
 
 
 @pytest.mark.parametrize("scene", ["rigid ground", "pads"])
-def test_what_remains_is_told_of_the_end_between_two_samples(scene):
+def test_residuals_are_taken_at_end_between_samples(scene):
     runs = [
         SCENES[scene].simulate(PULSE, duration="1.3 s", **asked)
         for asked in (
@@ -285,13 +285,13 @@ def test_what_remains_is_told_of_the_end_between_two_samples(scene):
     assert runs[1].rotation[-1] != exact.rotation[-1]
 
 
-def test_a_block_that_came_to_rest_has_no_residual_displacement():
+def test_block_at_rest_has_no_residual_displacement():
     response = rf.System(BLOCK, PADS).simulate(PULSE, duration="300 s", output_step="1 s")
     assert abs(response.residual_rotation) < 1e-6
     assert abs(response.residual_settlement) < 1e-6
 
 
-def test_only_what_is_asked_for_is_given(scene):
+def test_output_groups_return_only_requested_variables(scene):
     system = SCENES[scene]
     assert not set(ON_REQUEST) & set(system.simulate(PULSE).variables)
     for group, names in GROUPS.items():
@@ -301,13 +301,13 @@ def test_only_what_is_asked_for_is_given(scene):
 
 
 @pytest.mark.parametrize("name", ON_REQUEST)
-def test_what_is_asked_for_alone_is_given(scene, name):
+def test_single_output_can_be_requested_by_name(scene, name):
     if scene not in OF_SOME.get(name, SCENES):
         pytest.skip("the scene has no such thing")
     assert name in SCENES[scene].simulate(PULSE, duration="0.5 s", outputs=name)
 
 
-def test_points_go_through_a_file(tmp_path):
+def test_points_survive_netcdf_round_trip(tmp_path):
     response = rf.System(BLOCK, PADS).simulate(PULSE, points=POINTS, outputs="acceleration")
     assert response.point.values.tolist() == list(POINTS)
     assert response.point_y.sel(point="roof") == 9.6
@@ -316,7 +316,7 @@ def test_points_go_through_a_file(tmp_path):
         xr.testing.assert_identical(again.load(), response)
 
 
-def test_what_is_not_known_is_refused():
+def test_unknown_outputs_and_invalid_points_are_refused():
     system = rf.System(BLOCK, PADS)
     for outputs in ("shear", ["rotation", "acelleration"], [3]):
         with pytest.raises(AssemblyError, match=r"outputs has no .*'friction_demand'"):
@@ -338,7 +338,7 @@ def test_what_is_not_known_is_refused():
         system.simulate(PULSE, outputs="toe_pressure")
 
 
-def test_a_verdict_tells_the_friction_that_it_needed():
+def test_verdict_reports_friction_demand():
     response = SCENES["rigid ground"].simulate(PULSE)
     needed = response.peak_friction_demand.item()
     lasted = response.peak_friction_demand_duration.item()
@@ -373,7 +373,7 @@ DRY = rf.RigidGround()
     ],
     ids=["tendon", "load", "tie", "frame", "stack"],
 )
-def test_the_friction_to_rock_is_that_needed_as_rocking_begins(system):
+def test_described_friction_to_rock_is_demand_at_uplift(system):
     told = " ".join(system.describe().split())
     least = min(map(float, re.findall(r"friction to rock, at least (?:b/h )?([\d.]+)", told)))
     found = re.findall(r"as one at xg'' of ([\d.]+)|preload holds, ([\d.]+)", told)
@@ -388,7 +388,7 @@ def test_the_friction_to_rock_is_that_needed_as_rocking_begins(system):
             assert run.peak_friction_demand.item() == pytest.approx(least, rel=4e-3)
 
 
-def test_frictions_to_rock_are_told_of_each_base_and_of_the_side_that_is_open():
+def test_description_lists_friction_to_rock_of_each_base_and_free_side():
     told = " ".join(rf.System(rf.Stack(BLOCK, DRUM, interfaces=[DRY]), DRY).describe().split())
     height = (50.0 * (3.0 + H) + 60.0 * 1.5) / 110.0
     for words in (
@@ -445,7 +445,7 @@ def test_too_little_friction_warns_with_time_and_duration():
         rf.System(BLOCK, almost, sliding="checked").simulate(PULSE)
 
 
-def test_the_friction_of_a_stack_is_that_of_both_its_bases():
+def test_friction_of_stack_is_checked_at_both_bases():
     pads, soil = PADS.replace(friction=0.05), SOIL.replace(friction=0.05)
     with pytest.warns(ModelWarning) as caught:
         response = rf.System(BLOCK, pads, CAP, soil, sliding="checked").simulate(PULSE)
@@ -459,7 +459,7 @@ def test_the_friction_of_a_stack_is_that_of_both_its_bases():
 
 
 @pytest.mark.parametrize("values", [(0.09, -0.2), (-0.2, 0.2), (0.0, 0.15, -0.2, 0.05)])
-def test_a_force_that_reverses_within_a_step_is_above_half_its_peak_on_both_sides(values):
+def test_duration_above_level_counts_force_reversal_within_step(values):
     system = rf.System(BLOCK, rf.RigidGround(friction=0.08), sliding="checked")
     motion = rf.GroundMotion.from_arrays((values, "g_0"), "0.02 s")
     with pytest.warns(ModelWarning, match="would slide"):

@@ -15,7 +15,7 @@ PULSE = rf.GroundMotion.sine_pulse("4 m/s^2", "0.7 Hz")
 PLAN = {"free_vibration": "4 s", "accuracy": "reference", "outputs": ("energy", "reaction")}
 
 
-def test_moments_and_uplift_have_their_closed_forms():
+def test_moments_and_uplift_match_closed_forms():
     angles = np.array([-0.12, -0.03, 0.01, 0.05, 0.15])
     with_tendons, without = (
         rf.System(*parts).moment_rotation((angles, "rad")).restoring_moment.values
@@ -36,7 +36,7 @@ def test_moments_and_uplift_have_their_closed_forms():
         assert (float(system.simulate(motion).peak_rotation) > 0.0) is rocks
 
 
-def test_a_tendon_that_holds_nothing_makes_no_difference():
+def test_tendon_without_stiffness_changes_nothing():
     weak = rf.Tendon(stiffness="1e-9 N/m")
     run = rf.System(BENT, weak).simulate(PULSE.scaled(0.7), **PLAN)
     bare = rf.System(BENT).simulate(PULSE.scaled(0.7), **PLAN)
@@ -47,7 +47,7 @@ def test_a_tendon_that_holds_nothing_makes_no_difference():
         np.testing.assert_allclose(run[name], bare[name], rtol=0.0, atol=1e-6 * scale)
 
 
-def test_reactions_at_rest_come_to_a_corner_as_rocking_begins():
+def test_reactions_at_rest_shift_to_one_corner_at_uplift():
     system = rf.System(BENT, TENDON)
     starts, rest = system.setting.uplift_acceleration, system.equilibrium()
     shares = np.array([0.0, 0.25, 0.5, 0.999, 0.0])
@@ -62,7 +62,7 @@ def test_reactions_at_rest_come_to_a_corner_as_rocking_begins():
     )
 
 
-def test_the_moment_of_the_feet_is_that_of_the_corners_that_bear():
+def test_base_moment_of_frame_is_that_of_bearing_corners():
     run = rf.System(BENT, TENDON).simulate(PULSE.scaled(1.5), **PLAN)
     lean = run.rotation.values
     assert abs(lean).max() > 0.01
@@ -75,7 +75,7 @@ def test_the_moment_of_the_feet_is_that_of_the_corners_that_bear():
 
 
 @pytest.mark.long
-def test_one_column_s_tendons_are_those_of_a_block_that_is_bent_twice():
+def test_frame_without_beam_matches_block_with_equivalent_tendon():
     """Without a beam, a column with a tendon at half of its gaps is a block with that tendon."""
     frame = rf.RockingFrame(PIER, columns=2, beam_mass="0 t")
     twice = rf.Tendon(stiffness="20 MN/m", preload="0.8 MN")
@@ -99,7 +99,7 @@ def test_one_column_s_tendons_are_those_of_a_block_that_is_bent_twice():
         ({"preload": "200 kN", "strength": "0.5 MN", "brittle": True}, {2, 16}),
     ],
 )
-def test_energies_balance_and_mirrored_runs_are_mirrored(given, kinds):
+def test_energy_balances_and_mirrored_motion_mirrors_response(given, kinds):
     system = rf.System(BENT, rf.Tendon(stiffness="5 MN/m", **given))
     run = system.simulate(PULSE, **PLAN)
     assert float(run.energy_residual) < 1e-8
@@ -111,7 +111,7 @@ def test_energies_balance_and_mirrored_runs_are_mirrored(given, kinds):
     )
 
 
-def test_files_sweeps_certificates_and_figures(tmp_path):
+def test_frame_with_tendon_in_files_sweeps_certificates_and_figures(tmp_path):
     system = rf.System(BENT, TENDON)
     run = system.simulate(PULSE, free_vibration="2 s")
     run.to_netcdf(tmp_path / "bent.nc")

@@ -160,7 +160,7 @@ def test_uplift_starts_at_its_threshold(rotation):
         assert np.sign(moved.rotation.values[first]) == -sign
 
 
-def test_a_block_that_the_ground_tips_does_not_come_to_rest():
+def test_slow_landing_on_tipping_ground_does_not_come_to_rest():
     """It bounces on one corner for an instant, and leaves over the other one with its speed."""
     b, h, restitution, ground = 0.5, 2.0, 0.3, -0.27 * GRAVITY
     block = rf.Block(width="1 m", height="4 m", mass="1 t")
@@ -186,7 +186,7 @@ def test_a_block_that_the_ground_tips_does_not_come_to_rest():
     assert run.angular_velocity_after.values == pytest.approx(speeds, rel=1e-6)
 
 
-def test_a_ramp_lifts_the_block_when_it_crosses_the_threshold():
+def test_ramp_lifts_block_at_uplift_threshold():
     theta = 0.25
     system = rigid_block(theta)
     ramp = rf.GroundMotion.from_arrays(([0.0, 4.0], "m/s^2"), "1 s")
@@ -222,7 +222,7 @@ def test_a_steady_vertical_acceleration_acts_as_gravity(vertical):
 @pytest.mark.parametrize(
     ("slenderness", "height", "printed"), [(4.0, 2.0, 0.924895), (6.0, 6.0, 1.054801)]
 )
-def test_velocity_step_that_overturns(slenderness, height, printed):
+def test_overturning_velocity_step_in_closed_form(slenderness, height, printed):
     """A sudden velocity V of the ground gives m h V of moment of momentum about the corner."""
     theta = math.atan(1.0 / slenderness)
     radius = 0.5 * height / math.cos(theta)
@@ -261,7 +261,7 @@ def test_a_short_strong_pulse_is_a_velocity_step():
     assert response.angular_velocity.values[-1] == pytest.approx(expected, rel=1e-4)
 
 
-def test_a_block_that_would_leave_the_ground_is_warned_about():
+def test_ground_tension_warns():
     """A squat block, thrown fast: at impact m (g - R0 cos(theta) a'^2 ...) is negative."""
     system = rf.System(rf.Block(width="2 m", height="2 m", mass="1 t"))
     fast = rf.InitialState(rotation="0.1 rad", angular_velocity="-4 rad/s")

@@ -96,7 +96,7 @@ def test_pads_against_true_axes(name):
         assert np.abs(moved - wanted).max() < size, name
 
 
-def test_a_block_stands_up_to_the_angle_of_its_downhill_corner():
+def test_block_falls_beyond_slope_of_its_downhill_corner():
     for block, side in ((BLOCK, 1.0), (BLOCK, -1.0), (LOPSIDED, 1.0), (LOPSIDED, -1.0)):
         si = block.si
         steepest = math.atan2(si.half_width + side * si.eccentricity, si.centre_height)
@@ -124,7 +124,7 @@ def test_rocking_starts_at_the_acceleration_of_the_tilted_block():
 
 
 @pytest.mark.parametrize("parts", [(), (rf.TwoSpringSupport(stiffness="1 GN/m", damping_ratio=1),)])
-def test_it_overturns_beyond_the_unstable_equilibrium(parts):
+def test_overturning_angles_are_unstable_equilibria_of_slope(parts):
     i = math.radians(5.0)
     system = rf.System(BLOCK, *parts, inclination="5 deg")
     limits = {"left": -(THETA - i), "right": THETA + i}
@@ -161,7 +161,7 @@ def test_quarter_periods_of_small_free_rocking_about_each_corner():
         assert run.event_time.values[0] == pytest.approx(quarter, rel=1e-10)
 
 
-def test_bases_that_give_way_lean_by_the_weight_along_them():
+def test_rest_rotation_and_reactions_on_compliant_slopes():
     i, half = math.radians(3.0), 0.5 * WIDTH
     along, normal = MASS * G * math.sin(i), MASS * G * math.cos(i)
     pads = rf.TwoSpringSupport(stiffness="5 MN/m", damping_ratio=0.1)
@@ -186,7 +186,7 @@ def test_bases_that_give_way_lean_by_the_weight_along_them():
 @pytest.mark.filterwarnings("ignore:at rest the body leans")
 @pytest.mark.parametrize("share", [0.3, 0.9, 0.99, 0.999])
 @pytest.mark.parametrize("side", [1.0, -1.0])
-def test_a_body_on_a_bed_rests_on_its_whole_base_up_to_uplift(share, side):
+def test_body_on_bed_rests_in_full_contact_up_to_uplift(share, side):
     """There K sin a cos a = m g h sin(i + a); beyond it the held point moves, and so does rest."""
     b, h, stiffness = 0.5 * WIDTH, 0.5 * HEIGHT, 2e6
     rocking, weight = stiffness * b**3 / 1.5, MASS * G
@@ -211,7 +211,7 @@ def test_a_body_on_a_bed_rests_on_its_whole_base_up_to_uplift(share, side):
 
 @pytest.mark.filterwarnings("ignore:at rest the body leans")
 @pytest.mark.parametrize("inclination", [0.02, -0.03])
-def test_nothing_holds_a_stack_at_its_rest_on_a_slope(inclination):
+def test_restoring_moment_of_stack_vanishes_at_rest_on_slope(inclination):
     """Rest from the accelerations, the holding moment from the balance of forces."""
     system = rf.System(
         rf.Block(width="2 m", height="5 m", mass="40 t"),
@@ -226,7 +226,7 @@ def test_nothing_holds_a_stack_at_its_rest_on_a_slope(inclination):
     assert abs(held.restoring_moment.item()) < 1e-12 * 40e3 * 9.80665 * 2.5
 
 
-def test_absolute_accelerations_hold_no_gravity():
+def test_absolute_accelerations_exclude_gravity():
     motion, _ = record(3, 3.5, 4.0)
     system = rf.System(BLOCK, inclination="6 deg")
     run = system.simulate(motion, free_vibration="1 s", outputs=("acceleration", "reaction"))

@@ -67,7 +67,7 @@ def test_stiff_pads_tend_to_rigid_ground(slenderness, radius, amplitude, rule):
     [(2, 1, 1, 1.30946), (4, 1, 0, 0.40662), (4, 5, 1, 2.69659), (6, 1, 0, 0.32916),
      (6, 5, 1, 3.12423)],
 )  # fmt: skip
-def test_stiff_pads_give_the_verdicts_of_rigid_ground(slenderness, radius, impacts, time, rule):
+def test_stiff_pads_overturn_as_rigid_ground(slenderness, radius, impacts, time, rule):
     pads = Pads(
         radius=float(radius), slenderness=slenderness, beta=3000.0, damping_ratio=10.0,
         gravity=9.81,
@@ -82,7 +82,7 @@ def test_stiff_pads_give_the_verdicts_of_rigid_ground(slenderness, radius, impac
 
 @overdamped
 @pytest.mark.parametrize("rule", RULES)
-def test_at_stiff_pads_the_block_rolls_about_its_corner(rule):
+def test_energy_of_block_rolling_on_stiff_pads(rule):
     """Before any impact: released at an angle, it falls as the energy of its rule says."""
     pads = Pads(beta=2000.0, damping_ratio=10.0)
     start = 0.15
@@ -134,7 +134,7 @@ def scaled_run(system, size, noisy=False):
 @pytest.mark.parametrize("noisy", [False, True])
 @pytest.mark.parametrize("size", [0.25, 3.0, 16.0])
 @pytest.mark.parametrize("rule", ["rigid", *RULES])
-def test_larger_blocks_rock_the_same_way_more_slowly(rule, size, noisy):
+def test_response_scales_with_block_size(rule, size, noisy):
     responses = []
     for factor in (1.0, size):
         pads = Pads(radius=5.0 * factor)
@@ -168,7 +168,7 @@ def test_larger_blocks_rock_the_same_way_more_slowly(rule, size, noisy):
 
 @pytest.mark.parametrize("gravity", ["1.62 m/s^2", "39.2266 m/s^2"])
 @pytest.mark.parametrize("rule", ["rigid", "contact-state"])
-def test_gravity_sets_the_clock(rule, gravity):
+def test_gravity_changes_only_time_scale(rule, gravity):
     """With accelerations in shares of gravity, only the time scale changes."""
     responses = []
     for value in ("9.80665 m/s^2", gravity):

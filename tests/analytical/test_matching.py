@@ -50,7 +50,7 @@ def pseudo_spectrum(samples, step, periods, damping):
 
 @pytest.mark.parametrize("period", [0.1, 0.5, 2.0])
 @pytest.mark.parametrize("damping", [0.01, 0.05, 0.3])
-def test_a_wavelet_in_the_open_is_the_tapered_cosine_without_its_mean(period, damping):
+def test_wavelet_is_tapered_cosine_without_its_mean(period, damping):
     """A Gaussian takes the integral of the cosine away; both are known in closed form."""
     share = np.sqrt(1.0 - damping**2)
     frequency = 2.0 * np.pi / period * share
@@ -76,7 +76,7 @@ def test_a_wavelet_in_the_open_is_the_tapered_cosine_without_its_mean(period, da
 
 @pytest.mark.parametrize("peak_time", [0.0, 0.3, 2.0, 15.0, 29.5, 31.0])
 @pytest.mark.parametrize("period", [0.05, 0.7, 3.0, 10.0])
-def test_no_wavelet_moves_the_ground_for_good(peak_time, period):
+def test_wavelets_leave_no_permanent_ground_displacement(peak_time, period):
     """Straight lines through the samples: their integrals are known exactly."""
     one = wavelet_at(peak_time, period, 0.05, time_step=STEP, count=COUNT)
     samples = np.zeros(COUNT)
@@ -100,7 +100,7 @@ def noise(seed=3):
 
 
 @pytest.mark.parametrize("damping", [0.01, 0.05, 0.5])
-def test_peaks_are_those_of_the_response_spectrum(damping):
+def test_oscillator_peaks_match_response_spectrum(damping):
     samples = noise()
     oscillators = Oscillators(PERIODS, damping, STEP)
     histories = oscillators.histories(samples)
@@ -122,7 +122,7 @@ def test_peaks_are_those_of_the_response_spectrum(damping):
             assert exact[round(50 * time / STEP)] == pytest.approx(value, rel=3e-3)
 
 
-def test_a_motion_that_stops_in_full_swing_peaks_after_its_end():
+def test_oscillator_peak_after_end_of_motion_is_found():
     samples = np.sin(2.0 * np.pi * np.arange(400) * STEP / 2.0)[:60]
     oscillators = Oscillators(np.array([3.0]), 0.05, STEP)
     peaks = oscillators.peaks(samples, oscillators.histories(samples))
@@ -133,7 +133,7 @@ def test_a_motion_that_stops_in_full_swing_peaks_after_its_end():
 
 
 @pytest.mark.parametrize("damping", [0.01, 0.05, 0.4])
-def test_the_influence_of_a_sample_is_the_response_to_its_hat(damping):
+def test_sample_influences_reproduce_response(damping):
     """Of every sample at once: a motion's response is the sum over its samples."""
     samples = noise(4)
     oscillators = Oscillators(PERIODS, damping, STEP)
@@ -151,7 +151,7 @@ def test_the_influence_of_a_sample_is_the_response_to_its_hat(damping):
         assert abs(influences[place] @ samples - history[at]) < 1e-7 * scale
 
 
-def test_the_matrix_is_the_change_of_the_response_per_wavelet():
+def test_wavelet_effects_match_finite_differences():
     """By finite differences, with SciPy's integrator, at the times of the peaks."""
     samples, damping, parts = noise(5), 0.05, 50
     oscillators = Oscillators(PERIODS, damping, STEP)
@@ -175,7 +175,7 @@ def test_the_matrix_is_the_change_of_the_response_per_wavelet():
             assert made.effects[row, column] == pytest.approx(slope, abs=2e-3)
 
 
-def test_amplitudes_bring_the_peaks_where_they_are_to_be():
+def test_wavelet_amplitude_brings_peak_to_target():
     """Linear theory is exact as long as the times do not change: one oscillator, one wavelet."""
     samples = noise(6)
     oscillators = Oscillators(np.array([0.5]), 0.05, STEP)
@@ -193,7 +193,7 @@ def test_amplitudes_bring_the_peaks_where_they_are_to_be():
     assert np.sign(peaks.values[0]) * at == pytest.approx(0.01 * peaks.spectrum[0], rel=2e-3)
 
 
-def test_rivals_are_held_down():
+def test_second_peak_does_not_exceed_target():
     """Two peaks of one oscillator: the greatest goes to the target, the other not beyond it."""
     samples = noise(7)
     oscillators = Oscillators(np.array([0.5]), 0.05, STEP)

@@ -54,7 +54,7 @@ def test_the_gap_of_zhang_and_makris():
         assert np.array_equal(found[names].values, [impacts] * 3, equal_nan=True)
 
 
-def test_amplitudes_over_uplift_are_those_of_the_peak():
+def test_relative_amplitudes_use_peak_ground_acceleration():
     """A tenth of a sine has its peak at sin(0.2 pi) of its amplitude."""
     levels = np.array([1.0, 3.0]) * UPLIFT
     given = {"amplitude": (levels, "m/s^2"), "frequency": ([1.0, 2.0], "Hz"), "progress": False}
@@ -97,7 +97,7 @@ def test_rectangular_pulses():
     assert (found.impacts_above.isel(boundary=0) == 0.0).all()
 
 
-def test_blocks_of_all_sizes_obey_one_law():
+def test_overturning_spectrum_matches_closed_form_for_all_sizes():
     """Amplitude over g theta depends on the pulse's frequency over p alone."""
     scale = rf.overturning_spectrum(
         rigid_block(THETA, rotation="small"),

@@ -97,7 +97,7 @@ def test_rocking_period(rotation):
 
 
 @pytest.mark.parametrize("stiffness", ["beta", "N/m"])
-def test_stiffness_and_ratio_say_the_same(stiffness):
+def test_stiffness_and_frequency_ratio_are_equivalent(stiffness):
     given = (
         {"frequency_ratio": GOLDEN.beta, "damping_ratio": 0.1}
         if stiffness == "beta"
@@ -180,7 +180,7 @@ def test_motion_on_both_axes_superposes_at_small_rotation():
     assert worst(response.rotation.values, angle) < 1e-6
 
 
-def test_free_vibration_after_the_motion_goes_on_exactly():
+def test_free_vibration_equals_motion_padded_with_zeros():
     pads = Pads(damping_ratio=0.02)
     upwards = np.zeros(401)
     upwards[:41] = rough_record(41, STEP, 0.5, seed=5)
@@ -207,7 +207,7 @@ def test_free_vibration_after_the_motion_goes_on_exactly():
 @pytest.mark.parametrize("rule", RULES)
 @pytest.mark.parametrize("side", [1.0, -1.0])
 @pytest.mark.parametrize("slenderness", [2.0, 4.0, 6.0])
-def test_a_start_in_equilibrium_bears_the_weight(slenderness, side, rule):
+def test_vertical_equilibrium_start_supports_weight(slenderness, side, rule):
     pads = Pads(slenderness=slenderness)
     weight = pads.mass * pads.gravity
     for share in (0.01, 0.3, 0.999, 1.001, 2.0, 5.0):
@@ -263,7 +263,7 @@ def test_pads_too_soft_to_lift_have_no_uplift_angle():
     assert "never" in system.describe()
 
 
-def test_the_pads_hold_the_block_upright_exactly_above_a_stiffness():
+def test_pads_below_stability_limit_warn_and_block_overturns():
     limit = math.sqrt(Pads().gravity * Pads().h) / Pads().b / Pads().omega
     Pads(beta=limit * (1.0 + 1e-9)).system()
     with pytest.warns(ModelWarning, match="too soft"):

@@ -57,7 +57,7 @@ def half_sine(seconds=1.0, up=0.0, step=0.005):
 
 @pytest.mark.wide
 @pytest.mark.parametrize(("h_b", "radius", "seconds", "up", "off", "low", "high"), CASES)
-def test_both_sides_of_a_critical_scale_are_proved_and_runs_agree(
+def test_proofs_on_both_sides_of_critical_scale_agree_with_runs(
     h_b, radius, seconds, up, off, low, high
 ):
     plain = radius == 5.0 and not (up or off)
@@ -82,7 +82,7 @@ def test_a_block_that_bounces_to_rest_is_proved_safe():
     assert proof.overturns is False
 
 
-def test_a_ground_that_falls_faster_than_the_block_is_the_reason_of_a_refusal():
+def test_ground_falling_away_leaves_verdict_undecided():
     """Both corners are unloaded at one instant, not at a verge."""
     fall = np.array([0.0, -5.0, -12.0, -3.0, 0.0, 0.0])
     motion = rf.GroundMotion.from_arrays((np.zeros(6), "m/s^2"), "0.1 s", vertical=(fall, "m/s^2"))
@@ -97,7 +97,7 @@ def test_the_instant_of_overturning_is_enclosed():
     assert run.overturning_time.item() == pytest.approx(proof.earliest, abs=1e-9)
 
 
-def test_mirrored_eccentric_blocks_on_mirrored_slopes_have_the_same_proof():
+def test_mirrored_eccentric_blocks_on_mirrored_slopes_have_same_verdict():
     proofs = []
     for sign in (1.0, -1.0):
         block = rf.Block(
@@ -114,7 +114,7 @@ def test_mirrored_eccentric_blocks_on_mirrored_slopes_have_the_same_proof():
 
 
 @pytest.mark.parametrize("peak", ["4 m/s^2", "6 m/s^2"])
-def test_a_pulse_in_closed_form_is_proved_as_runs_take_it(peak):
+def test_proof_of_analytic_pulse_agrees_with_run(peak):
     scene, motion = system(4), rf.GroundMotion.sine_pulse(peak, "0.6 Hz")
     proof = rf.prove(scene, motion)
     run = scene.simulate(motion, free_vibration="20 s", accuracy="reference", outputs=None)
@@ -123,14 +123,14 @@ def test_a_pulse_in_closed_form_is_proved_as_runs_take_it(peak):
         assert run.overturning_time.item() == pytest.approx(proof.earliest, abs=1e-9)
 
 
-def test_a_tolerance_is_proved_or_said_to_be_too_wide():
+def test_proof_holds_for_restitution_tolerance():
     scene, motion = system(4), half_sine()
     assert rf.prove(scene, motion, scale=0.5, restitution_tolerance=1e-6).overturns is False
     assert "within 1e-06" in str(rf.prove(scene, motion, scale=0.5, restitution_tolerance=1e-6))
 
 
 @pytest.mark.long
-def test_a_set_about_a_critical_scale_is_proved_safe_below_and_to_overturn_above():
+def test_set_around_critical_scale_splits_into_safe_and_overturning_parts():
     scene, motion = system(4), half_sine()
     at = 0.5 * (CASES[0][-2] + CASES[0][-1])
     whole = rf.prove(scene, motion, scale=at, scale_tolerance=2e-3, parts=1)
@@ -180,14 +180,14 @@ def test_a_set_of_angles_scales_and_restitutions_has_the_verdict_of_its_middle(s
         (lambda b, m: (b, m), "System"),
     ],
 )
-def test_what_cannot_be_proved_is_refused(change, words):
+def test_unsupported_scenes_are_refused(change, words):
     block = rf.Block(width="1 m", height="4 m", mass="1 t")
     scene, motion, *given = change(block, half_sine())
     with pytest.raises(ComponentError, match=words):
         rf.prove(scene, motion, **(given[0] if given else {}))
 
 
-def test_a_critical_scale_is_bracketed_from_above_and_from_below():
+def test_critical_scale_is_bracketed_from_any_start():
     scene, motion = system(4), half_sine()
     for start in (0.45, 0.6):
         found = rf.prove_critical_scale(scene, motion, width=1e-5, start=start)
@@ -197,7 +197,7 @@ def test_a_critical_scale_is_bracketed_from_above_and_from_below():
         assert found.undecided == 0
 
 
-def test_a_motion_that_never_tips_the_block_has_no_critical_scale():
+def test_motion_without_critical_scale_is_refused():
     still = rf.GroundMotion.from_arrays((np.zeros(3), "m/s^2"), "0.01 s")
     with pytest.raises(ComponentError, match="another verdict"):
         rf.prove_critical_scale(system(4), still)
@@ -211,7 +211,7 @@ def test_a_motion_that_never_tips_the_block_has_no_critical_scale():
         pytest.param("small", 0.5, "overturns", marks=pytest.mark.long),
     ],
 )
-def test_verdicts_on_pads_are_proved_and_runs_agree(rotation, scale, verdict):
+def test_proofs_on_pads_agree_with_runs(rotation, scale, verdict):
     block = rf.Block.from_size(radius="5 m", slenderness=4, mass="50 t")
     scene = rf.System(block, PADS, rotation=rotation, gravity="9.81 m/s^2")
     proof = rf.prove(scene, half_sine(), scale=scale)
@@ -223,7 +223,7 @@ def test_verdicts_on_pads_are_proved_and_runs_agree(rotation, scale, verdict):
         assert float(run.overturning_time) == pytest.approx(proof.earliest, abs=1e-9)
 
 
-def test_a_tolerance_of_restitutions_on_pads_is_carried_through_impacts():
+def test_restitution_tolerance_on_pads_widens_overturning_time():
     block = rf.Block.from_size(radius="2 m", slenderness=4, mass="1 t")
     k = np.arange(101)
     across = 4.8 * np.round(np.sin(2.0 * np.pi * k * 0.01), 12)
@@ -234,7 +234,7 @@ def test_a_tolerance_of_restitutions_on_pads_is_carried_through_impacts():
     assert 1e-9 < proof.latest - proof.earliest < 1e-4
 
 
-def test_the_page_tells_what_was_decided_of_sets():
+def test_documented_table_of_proved_sets_matches_data():
     measured = json.loads((DOCS / "data" / "proof_sets.json").read_text(encoding="utf-8"))
     head = "| tolerance | decided as one set | in at most 8 parts | mean share decided |"
     rows = table("theory/proved_verdicts.md", head)
@@ -258,7 +258,7 @@ def test_the_page_tells_what_was_decided_of_sets():
     ],
     ids=["same end", "later end", "other reason"],
 )
-def test_more_bits_are_taken_as_long_as_they_lead_on(ends, tried):
+def test_precision_is_raised_while_it_makes_progress(ends, tried):
     attempts = []
 
     def attempt(_):

@@ -127,7 +127,7 @@ def case(request):
     return CASES[request.param]
 
 
-def test_every_pulse_is_here():
+def test_every_pulse_has_a_case():
     tested = {case.motion.recipe["constructor"] for case in CASES.values()}
     missing = set(PULSES) - tested - {"double_impulse"}  # which is below
     assert not missing, f"add the paths of {missing} to CASES"
@@ -148,19 +148,19 @@ def test_velocity_and_displacement(case):
 
 
 @pytest.mark.parametrize("name", dict.fromkeys(STOPPING))
-def test_the_ground_comes_to_rest(name):
+def test_final_ground_velocity_is_zero(name):
     _, velocity, _ = path(CASES[name].motion)
     assert abs(velocity[-1]) <= 5e-15 * len(velocity) ** 0.5 * np.max(np.abs(velocity))
 
 
 @pytest.mark.parametrize("name", RETURNING)
-def test_the_ground_comes_back(name):
+def test_final_ground_displacement_is_zero(name):
     _, _, displacement = path(CASES[name].motion)
     assert abs(displacement[-1]) <= EXACT * np.max(np.abs(displacement))
 
 
 @pytest.mark.parametrize(("cycles", "degrees"), ENVELOPED)
-def test_where_the_pulse_of_mavroeidis_leaves_the_ground(cycles, degrees):
+def test_residual_displacement_of_mavroeidis_pulse(cycles, degrees):
     _, _, displacement = path(mavroeidis(cycles, degrees))
     share = (
         0.25 if cycles == 1.0 else math.sin(math.pi * cycles) / (2.0 * math.pi * (1.0 - cycles**2))
@@ -187,7 +187,7 @@ def test_peak_velocity(name, peak):
 
 
 @pytest.mark.parametrize("name", ["type A", "type B", "Mavroeidis 1, 0 deg"])
-def test_the_velocity_asked_for_is_reached_at_a_sample(name):
+def test_requested_peak_velocity_is_reached_at_a_sample(name):
     _, velocity, _ = path(CASES[name].motion)
     assert np.max(velocity) == pytest.approx(VELOCITY, rel=1e-13)
 
@@ -257,7 +257,7 @@ def test_printed_ricker_wavelets():
 
 
 @pytest.mark.parametrize("antisymmetric", [False, True])
-def test_the_period_of_a_ricker_wavelet_is_that_of_its_spectral_peak(antisymmetric):
+def test_ricker_wavelet_period_is_that_of_its_spectral_peak(antisymmetric):
     motion = GroundMotion.ricker_wavelet("1 m/s^2", "1 s", antisymmetric=antisymmetric)
     time = np.arange(len(motion)) * motion.si.time_step
 
@@ -268,7 +268,7 @@ def test_the_period_of_a_ricker_wavelet_is_that_of_its_spectral_peak(antisymmetr
 
 
 @pytest.mark.parametrize("antisymmetric", [False, True])
-def test_the_cut_of_a_ricker_wavelet_is_negligible(antisymmetric):
+def test_truncation_of_ricker_wavelet_is_negligible(antisymmetric):
     samples = GroundMotion.ricker_wavelet(
         "1 m/s^2", "1 s", antisymmetric=antisymmetric
     ).si.horizontal.samples
@@ -306,7 +306,7 @@ def test_shape_of_an_impulse():
     assert motion.si.at(time) == pytest.approx(exact, abs=1e-12 * 7.5)
 
 
-def test_how_much_weaker_an_oscillator_takes_a_short_impulse():
+def test_spectral_reduction_of_short_impulse():
     u = sp.Symbol("u")
     shape = 30 * u**2 * (1 - u) ** 2
     moment = sp.integrate(shape * (u - sp.Rational(1, 2)) ** 2, (u, 0, 1))
@@ -314,7 +314,7 @@ def test_how_much_weaker_an_oscillator_takes_a_short_impulse():
     assert moment == sp.Rational(1, 28)  # |transform| = 1 - (omega duration)^2/56 + ...
 
 
-def test_the_one_cycle_sine_of_the_same_greatest_fourier_amplitude():
+def test_velocity_ratio_of_equivalent_one_cycle_sine():
     x = np.linspace(0.5, 0.99, 200001)
     greatest = np.max(np.sin(np.pi * x) / (1.0 - x**2))  # of the sine, over its v_p
     assert 2.0 / greatest == pytest.approx(1.222, abs=5e-4)  # v_p/V

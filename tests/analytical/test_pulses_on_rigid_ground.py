@@ -134,7 +134,7 @@ def test_one_sine_with_impact(ratio, edge, falls_above):
 
 
 @pytest.mark.parametrize("ratio", BANDS)
-def test_between_the_two_modes_of_overturning_lies_a_safe_gap(ratio):
+def test_safe_gap_lies_between_overturning_modes(ratio):
     upper = BANDS[ratio][-1][1]
     threshold = one_sine_threshold(ratio)
     assert upper < threshold
@@ -165,7 +165,7 @@ RIGID_LIMIT = [
 
 @pytest.mark.parametrize("accuracy", ["standard", "reference"])
 @pytest.mark.parametrize(("slenderness", "radius", "impacts", "time", "peak"), RIGID_LIMIT)
-def test_one_sine_of_one_g(slenderness, radius, impacts, time, peak, accuracy):
+def test_one_g_sine_overturning_times_and_peaks(slenderness, radius, impacts, time, peak, accuracy):
     block = rf.Block.from_size(radius=f"{radius} m", slenderness=slenderness, mass="50 t")
     system = rf.System(block, gravity="9.81 m/s^2")
     response = system.simulate(
@@ -183,7 +183,7 @@ def test_one_sine_of_one_g(slenderness, radius, impacts, time, peak, accuracy):
     assert response.time.values[-1] == response.overturning_time.item()
 
 
-def test_the_case_that_nearly_overturns_before_its_impact():
+def test_peak_before_impact_of_nearly_overturning_block():
     block = rf.Block.from_size(radius="5 m", slenderness=6, mass="50 t")
     response = rf.System(block, gravity="9.81 m/s^2").simulate(
         rf.GroundMotion.sine_pulse(), free_vibration="9 s", accuracy="reference"
@@ -212,20 +212,20 @@ def time_of_uplift(excess):
 @pytest.mark.parametrize("accuracy", ["fast", "standard"])
 @pytest.mark.parametrize("friction", [None, 0.8])
 @pytest.mark.parametrize("excess", [1e-9, 1e-6, 1e-5, 2e-4])
-def test_uplift_at_a_peak_inside_a_polynomial(excess, friction, accuracy):
+def test_uplift_at_pulse_peak_within_a_step(excess, friction, accuracy):
     found = just_uplifting(rf.RigidGround(friction=friction), excess, accuracy)
     # the sine is a polynomial to some 1e-11 of its amplitude
     slack = 1e-11 / math.sqrt(2.0 * excess) / (2.0 * math.pi) + 1e-12
     assert found.first_uplift_time.item() == pytest.approx(time_of_uplift(excess), abs=slack)
 
 
-def test_no_uplift_at_a_peak_that_stays_below():
+def test_no_uplift_at_peak_below_threshold():
     found = just_uplifting(rf.RigidGround(), -1e-9, "standard")
     assert math.isnan(found.first_uplift_time.item())
     assert found.peak_rotation.item() == 0.0
 
 
-def test_uplift_at_a_peak_of_both_directions():
+def test_uplift_at_joint_peak_of_horizontal_and_vertical_motion():
     # both peak at 1/4 s; what the block resists falls by tan(theta) of what pushes it upwards
     block = rf.Block(width="1 m", height="4 m", mass="1 t")
     excess = 1e-8

@@ -103,7 +103,7 @@ def test_double_impulse(interval, parts):
     )
 
 
-def test_the_ground_stands_still_after_a_jump():
+def test_ground_stands_still_after_final_jump():
     motion = rf.GroundMotion.type_b_pulse("0.02 m/s", "1 s")
     response = rigid_block(THETA).simulate(motion, free_vibration="0.5 s", output_step="0.05 s")
     excitation = response.ground_acceleration.sel(time=slice(1.01, None))
@@ -111,7 +111,7 @@ def test_the_ground_stands_still_after_a_jump():
     assert not np.any(excitation)
 
 
-def test_the_first_sample_shows_the_contact_after_a_jump_at_the_start():
+def test_first_sample_has_contact_state_after_initial_jump():
     block = rf.Block(width="1 m", height="4 m", mass="1 t")
     steady = rf.GroundMotion.from_arrays((np.full(100, -6.0), "m/s^2"), time_step="5 ms")
     run = rf.System(block).simulate(steady)

@@ -28,7 +28,7 @@ def released(share, wall=None, **options):
     )  # fmt: skip
 
 
-def test_the_impacts_of_a_wall_of_three_metres():
+def test_impacts_of_three_metre_facade():
     system, run = released(0.5)
     assert system.setting.rebound == pytest.approx(-0.4708451705, abs=1e-10)
     times = [0.596292379, 0.988605500, 1.164795505, 1.246950582, 1.285550844]
@@ -66,7 +66,7 @@ def test_the_impulse_of_base_and_wall_is_the_change_of_momentum():
     ("slenderness", "ratio"),
     [(2, -0.098000), (4, -0.342306), (6, -0.422961), (8, -0.455165), (10, -0.470845)],
 )
-def test_the_ratios_of_the_series_of_impacts(slenderness, ratio):
+def test_rebound_ratio_in_closed_form(slenderness, ratio):
     block = rf.Block(width="1 m", height=f"{slenderness} m", mass="1 t")
     rebound = rf.System(block, rf.RearWall()).setting.rebound
     square = 1.0 / (1.0 + slenderness**2)
@@ -75,7 +75,7 @@ def test_the_ratios_of_the_series_of_impacts(slenderness, ratio):
     assert rebound == pytest.approx(ratio, abs=6e-7)
 
 
-def test_the_law_of_newton_and_numbers():
+def test_newton_law_and_numeric_restitution():
     wall = rf.RearWall(restitution="newton", wall_restitution=0.3)
     base = FACADE.si.maximum_restitution
     assert rf.System(FACADE, wall).setting.rebound == pytest.approx(-0.3 * base**2)
@@ -96,12 +96,12 @@ def test_the_law_of_newton_and_numbers():
         ({"side": "behind"}, "left"),
     ],
 )
-def test_what_is_no_wall_is_refused(given, words):
+def test_invalid_wall_is_refused(given, words):
     with pytest.raises(RockframeError, match=words):
         rf.RearWall(**given)
 
 
-def test_what_a_wall_does_not_go_with():
+def test_wall_refuses_incompatible_parts_and_states():
     squat = rf.Block(width="1 m", height="1.3 m", mass="1 t")
     with pytest.raises(AssemblyError, match="does not rebound"):
         rf.System(squat, rf.RearWall())
@@ -125,7 +125,7 @@ def test_what_a_wall_does_not_go_with():
         system.moment_rotation(["0.01 rad"])
 
 
-def test_small_rotation_decays_by_its_closed_form():
+def test_small_rotation_decay_in_closed_form():
     system, run = released(0.4, rotation="small")
     omega, e, share, time = system.setting.body.frequency_at(9.81), system.setting.rebound, 0.4, 0.0
     for k, found in enumerate(run.event_time.to_numpy()[:6]):
@@ -135,7 +135,7 @@ def test_small_rotation_decays_by_its_closed_form():
         share = 1.0 - math.sqrt(1.0 - e * e * (1.0 - (1.0 - share) ** 2))
 
 
-def test_a_wall_on_the_right_is_the_mirror_of_one_on_the_left():
+def test_walls_on_left_and_right_give_mirrored_response():
     eccentric = FACADE.replace(eccentricity="0.02 m")
     plan = {"free_vibration": "3 s", "outputs": ("reaction", "energy")}
     left = rf.System(eccentric, rf.RearWall(side="left")).simulate(PULSE, **plan)
@@ -147,14 +147,14 @@ def test_a_wall_on_the_right_is_the_mirror_of_one_on_the_left():
     np.testing.assert_array_equal(left.base_shear, -right.base_shear)
 
 
-def test_a_wall_without_loss_keeps_the_energy():
+def test_lossless_wall_conserves_energy():
     _, run = released(0.5, rf.RearWall(restitution=-1))
     energy = run.kinetic_energy + run.potential_energy
     np.testing.assert_allclose(energy, energy[0], rtol=1e-9)
     assert int(run.impact_count) >= 3
 
 
-def test_until_its_first_impact_it_rocks_as_without_a_wall():
+def test_wall_changes_nothing_before_first_impact():
     plan = {"free_vibration": "3 s", "accuracy": "reference"}
     before = rf.System(FACADE, rf.RearWall()).simulate(PULSE, **plan)
     free = rf.System(FACADE).simulate(PULSE, **plan)
@@ -167,7 +167,7 @@ def test_until_its_first_impact_it_rocks_as_without_a_wall():
     assert float(held.peak_rotation) == 0.0
 
 
-def test_a_block_that_leans_on_its_wall():
+def test_reactions_of_block_leaning_on_wall():
     steady = rf.GroundMotion.from_arrays(([2.0, 2.0], "m/s^2"), "0.5 s")
     run = rf.System(FACADE, rf.RearWall(), gravity=GRAVITY).simulate(
         steady, outputs=("reaction", "friction_demand")
@@ -181,7 +181,7 @@ def test_a_block_that_leans_on_its_wall():
     np.testing.assert_allclose(run.base_overturning_moment, -1600.0 * 9.81 * 0.15, rtol=1e-12)
 
 
-def test_statics_studies_figures_and_files(tmp_path):
+def test_wall_in_statics_studies_figures_and_files(tmp_path):
     system = rf.System(FACADE, rf.RearWall(side="right"))
     free = rf.System(FACADE)
     left, right = system.setting.uplift_accelerations

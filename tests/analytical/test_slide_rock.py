@@ -75,7 +75,7 @@ def test_newmarks_block_under_half_a_sine(own, yields, amplitude, length, distan
 
 
 @pytest.mark.parametrize("friction", [1.0, 20.0])
-def test_much_friction_leaves_housners_block(own, friction):
+def test_high_friction_gives_housner_block(own, friction):
     options = {
         "accuracy": "reference", "free_vibration": "2 s",
         "outputs": ["energy", "acceleration", "reaction"],
@@ -109,7 +109,7 @@ def test_impacts_with_little_friction(own, slenderness, share, side):
     assert memory[0] > 0.0
 
 
-def test_impacts_with_enough_friction_are_housners(own):
+def test_impacts_with_sufficient_friction_match_housner(own):
     system = standing(own, SLENDER, 0.185).assembly.model.system
     state = np.array([0.0, 0.0, 0.0, -0.3])
     assert system.impact(3, state, Ground(0.0, 0.0), np.zeros(5)) == 6
@@ -141,7 +141,7 @@ def test_energy_balances_and_friction_bounds_the_shear(own, frictions):
 
 
 @pytest.mark.parametrize("friction", [0.02, 0.15])
-def test_a_block_that_is_let_go_slips_as_it_rocks(own, friction):
+def test_released_block_slips_while_rocking(own, friction):
     """Its centre of mass moves only as far as friction lets it."""
     response = standing(own, SLENDER, friction).simulate(
         initial=rf.InitialState(rotation="0.1 rad"), duration="6 s", accuracy="reference",
@@ -155,7 +155,7 @@ def test_a_block_that_is_let_go_slips_as_it_rocks(own, friction):
     np.testing.assert_allclose(response.horizontal_reaction, shear, atol=1e-9 * mass)
 
 
-def test_a_block_starts_to_slide_at_its_friction_and_to_rock_at_its_slenderness(own):
+def test_thresholds_of_sliding_and_rocking(own):
     """At rest while |xg''|/g <= min(b/h, mu)."""
     for friction in 0.2, 0.4:
         least = min(friction, 0.25) * GRAVITY

@@ -109,7 +109,7 @@ def test_newmarks_block_under_half_a_sine(yields, amplitude, length, distance, s
 
 
 @pytest.mark.parametrize("restitution", [None, 0.8])
-def test_friction_without_end_leaves_housners_block(restitution):
+def test_infinite_friction_gives_housner_block(restitution):
     options = {
         "accuracy": "reference", "free_vibration": "1 s",
         "outputs": ["energy", "acceleration", "reaction"],
@@ -126,7 +126,7 @@ def test_friction_without_end_leaves_housners_block(restitution):
     assert ours.attrs["verdict"].startswith("Did not slide, did not overturn")
 
 
-def test_a_block_without_friction_keeps_its_place_in_space():
+def test_frictionless_block_stays_in_place_as_ground_moves():
     """Its centre of mass moves as far as the ground, the other way, and it does not rock."""
     pulse = rf.GroundMotion.sine_pulse(amplitude="6 m/s^2", frequency="1 Hz")
     run = standing(SLENDER, 0.0).simulate(pulse, accuracy="reference")
@@ -144,7 +144,7 @@ def test_a_block_without_friction_keeps_its_place_in_space():
         *(pytest.param(one, marks=pytest.mark.long) for one in ((0.3, 0.3), (0.2, 0.15))),
     ],
 )
-def test_mirror_images_balance_and_cone(friction):
+def test_mirror_symmetry_energy_balance_and_friction_cone(friction):
     run, mirrored = (
         standing(SLENDER, *friction).simulate(
             noise(sign), free_vibration="1 s", accuracy="reference",
@@ -188,7 +188,7 @@ def test_impacts_after_rocking_about_a_held_corner(slenderness, share, side):
     assert memory[IMPACT_LOSS] > 0.0
 
 
-def test_a_slip_that_ends_within_an_impact_turns_round_or_sticks():
+def test_slip_that_stops_within_impact_reverses_or_sticks():
     """What comes out of the impulse taken in a thousand parts."""
     rng = np.random.default_rng(4)
     system = standing(SLENDER, 0.1).assembly.model.system
@@ -212,7 +212,7 @@ def test_a_slip_that_ends_within_an_impact_turns_round_or_sticks():
     assert reversed_ones > 3
 
 
-def test_impacts_that_stick_are_housners_whatever_the_friction():
+def test_sticking_impacts_match_housner_for_any_friction():
     ground = rf.RigidGround(friction=0.05, impact="stick")
     system = rf.System(SLENDER, ground).assembly.model.system
     state, memory = np.zeros(2 * DOF), np.zeros(len(SLIDE_MEMORY))
@@ -222,7 +222,7 @@ def test_impacts_that_stick_are_housners_whatever_the_friction():
 
 
 @pytest.mark.parametrize("side", [1.0, -1.0])
-def test_a_slip_tips_where_its_guard_says_so_though_rounding_says_no(side):
+def test_tipping_guard_prevails_over_rounding(side):
     """Of kinetic friction b/h the centre of pressure is on the corner, to rounding."""
     system = standing(SLENDER, 0.9, 0.25).assembly.model.system
     system = system._replace(kinetic=system.kinetic * (1.0 - 1e-15))
@@ -236,7 +236,7 @@ def test_a_slip_tips_where_its_guard_says_so_though_rounding_says_no(side):
 
 
 @pytest.mark.parametrize("slips", [HELD, TO_RIGHT, TO_LEFT])
-def test_a_corner_parts_whatever_rounding_leaves_of_its_force(slips):
+def test_corner_separates_despite_rounding_of_its_force(slips):
     """Where its guard has found it, a force of the last bit neither holds it nor presses it."""
     friction = math.inf if slips == HELD else 0.3
     system = standing(SLENDER, 0.3).assembly.model.system
@@ -282,11 +282,11 @@ def test_thresholds_from_rest(acceleration):
 
 
 @pytest.mark.parametrize(("acceleration", "friction"), [(0.249, 0.5), (0.199, 0.2)])
-def test_rest(acceleration, friction):
+def test_block_below_thresholds_stays_at_rest(acceleration, friction):
     assert kinds_under(acceleration, friction) == ()
 
 
-def test_friction_that_may_jam_is_refused_with_its_bound():
+def test_friction_above_jamming_bound_is_refused():
     for block in (SLENDER, LOW, SQUAT):
         standing(block, 1e6, 1.333)
         with pytest.raises(AssemblyError, match=r"below 1\.33333"):
@@ -318,7 +318,7 @@ def test_a_block_thrown_up_flies_and_lands():
     assert float(run.energy_residual) <= 1e-8
 
 
-def test_a_block_slides_down_by_its_weight_and_says_so():
+def test_block_sliding_down_slope_by_its_weight_warns():
     with pytest.warns(ModelWarning, match="slides by its own weight"):
         system = standing(LOW, 0.3, inclination="0.4 rad")
     run = system.simulate(duration="1 s", accuracy="reference")
@@ -326,7 +326,7 @@ def test_a_block_slides_down_by_its_weight_and_says_so():
     assert float(run.residual_slip) == pytest.approx(-0.5 * down, rel=1e-9)
 
 
-def test_coefficients_and_kinematics_that_do_not_go_together():
+def test_inconsistent_friction_and_kinematics_are_refused():
     for given in ({"kinetic_friction": 0.3}, {"friction": 0.2, "kinetic_friction": 0.3}):
         with pytest.raises(ComponentError, match="kinetic_friction"):
             rf.RigidGround(**given)
@@ -334,7 +334,7 @@ def test_coefficients_and_kinematics_that_do_not_go_together():
         standing(SLENDER, 0.3, rotation="small")
 
 
-def test_a_result_gives_its_system_and_goes_on(tmp_path):
+def test_system_survives_result_and_run_continues(tmp_path):
     system = standing(SLENDER, 0.26, 0.2, sliding="computed")
     run = system.simulate(noise(), accuracy="reference")
     run.to_netcdf(tmp_path / "run.nc")

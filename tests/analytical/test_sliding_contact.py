@@ -125,7 +125,7 @@ def test_sliding_contact_is_the_limit_of_dry_friction():
 
 @pytest.mark.parametrize("model", [pads, bed])
 @pytest.mark.parametrize("restraint", range(3))
-def test_a_corner_that_slides_keeps_its_level_and_dissipates(model, restraint):
+def test_sliding_corner_stays_level_and_dissipates(model, restraint):
     one = model(restraint)
     run = drop(one)
     sliding = slides(one, run.mode)
@@ -154,7 +154,7 @@ def test_sliding_on_the_left_mirrors_sliding_on_the_right(model, restraint):
     np.testing.assert_array_equal(other.events.kind, one.events.kind)
 
 
-def test_a_corner_that_presses_after_the_hold_does_not_slide():
+def test_fast_landing_corner_does_not_slide():
     """It comes down so fast that the hold cannot stop it."""
     model = pads()
     run = drop(model, speed=-3.0)
@@ -208,7 +208,7 @@ def squat_by_friction(start, coefficient, times):
     ).y  # fmt: skip
 
 
-def test_a_corner_that_flight_would_press_slides_along_its_relaxing_pad():
+def test_corner_slides_along_relaxing_pad_until_flight():
     """Held it leaves, free it would be pressed at once: the limit of dry friction lies between."""
     model, run = leaving()
     separates = run.events.kind == EventKind.SEPARATION
@@ -232,14 +232,14 @@ def test_a_corner_that_flight_would_press_slides_along_its_relaxing_pad():
     assert gaps[-1].max() < 5e-3
 
 
-def test_leaving_into_flight_has_no_side():
+def test_separation_into_flight_is_mirror_symmetric():
     (_, one), (_, other) = leaving(), leaving(-1.0)
     turned = np.array([-1.0, 1.0, -1.0, -1.0, 1.0, -1.0])
     np.testing.assert_array_equal(other.state, one.state * turned)
     np.testing.assert_array_equal(other.events.kind, one.events.kind)
 
 
-def test_fixed_steps_are_cut_to_what_a_fast_pad_asks_for_while_a_corner_slides():
+def test_fixed_steps_are_refined_while_corner_slides_on_fast_pad():
     """A weak dashpot relaxes in a sixth of the step that the vibrations need."""
     model = on_pads(block(1.0, 1.705, CENTRE), 840.0, 1.45)
     ground = Motion.of_samples(0.01, np.zeros(51), np.zeros(51))
@@ -262,7 +262,7 @@ def test_fixed_steps_are_cut_to_what_a_fast_pad_asks_for_while_a_corner_slides()
     assert fast.energy_residual < 1e-3
 
 
-def test_a_speed_that_is_rounding_is_none():
+def test_rounding_error_of_speed_counts_as_zero():
     """An end stands still where the body moves as fast as it rotates, but for the last digits."""
     rng = np.random.default_rng(4)
     beside = 0

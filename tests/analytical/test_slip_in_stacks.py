@@ -52,7 +52,7 @@ def run_of(interfaces, base, motion, *links, bodies=(STATUE, PLINTH), offset=0.0
         ((0.3, 0.3), (0.4, 0.4), False),
     ],
 )
-def test_a_jump_after_which_plates_may_slip_in_two_ways_is_told(between, below, told):
+def test_ambiguous_slip_after_jump_is_in_cautions(between, below, told):
     jump = rf.GroundMotion.from_arrays((np.full(11, 0.6 * GRAVITY), "m/s^2"), "0.01 s")
     with plainly():
         found = run_of(
@@ -81,7 +81,7 @@ def test_two_plates_that_slide_in_closed_form(way):
     assert found.peak_body_rotation.max().item() == 0.0
 
 
-def test_one_that_sticks_rides_on_one_that_slides():
+def test_sticking_body_rides_on_sliding_body():
     steady = rf.GroundMotion.from_arrays((np.full(41, 5.0), "m/s^2"), "0.01 s")
     with plainly():
         found = run_of([ground(0.4)], ground(0.3, 0.25), steady, free_vibration=None)
@@ -93,7 +93,7 @@ def test_one_that_sticks_rides_on_one_that_slides():
 @pytest.mark.parametrize(
     ("seed", "static", "kinetic"), [(5, 0.36, 0.25), (8, 0.36, 0.25), (6, 0.38, 0.36)]
 )
-def test_a_wide_body_below_is_the_ground(seed, static, kinetic):
+def test_wide_lower_body_acts_as_ground(seed, static, kinetic):
     """In these runs no slip ends and turns round within an impact, where the laws differ."""
     floor, shaken = ground(static, kinetic), noise(seed, 6.0)
     wide = rf.Block(width="4 m", height="1 m", mass="30 t")
@@ -108,7 +108,7 @@ def test_a_wide_body_below_is_the_ground(seed, static, kinetic):
 
 
 @pytest.mark.long
-def test_friction_without_end_holds():
+def test_infinite_friction_prevents_slip():
     shaken = noise(3, 5.0)
     found = run_of([ENDLESS], ENDLESS, shaken)
     held = run_of([rf.RigidGround()], rf.RigidGround(), shaken)
@@ -130,7 +130,7 @@ def test_friction_without_end_holds():
         (PADS.replace(friction=0.36, restitution=0.8), ground(0.5, 0.3)),
     ],
 )
-def test_energies_balance_and_mirrored_runs_are_mirrored(joint, base):
+def test_energy_balances_and_mirrored_motion_mirrors_response(joint, base):
     one = run_of([joint], base, noise(5, 6.0), offset=0.05)
     other = run_of([joint], base, noise(5, 6.0, mirrored=-1.0), offset=-0.05)
     assert one.peak_body_slip.values[0] > 1e-3
@@ -144,7 +144,7 @@ def test_energies_balance_and_mirrored_runs_are_mirrored(joint, base):
 
 
 @pytest.mark.long
-def test_laws_of_impact():
+def test_sticking_impacts_rock_more_and_slip_less():
     shaken = noise(4, 6.0)
     slides, sticks = (
         run_of([ground(0.34, 0.3, impact=law)], ground(0.8), shaken) for law in ("coulomb", "stick")
@@ -156,7 +156,7 @@ def test_laws_of_impact():
     assert sticks.peak_body_slip.values[0] < slides.peak_body_slip.values[0]
 
 
-def test_restrained_bodies_slide():
+def test_restrainers_limit_slip():
     shaken, joint = noise(3, 6.0).window("0 s", "0.5 s"), ground(0.3)
     loose = {"on": ("0.5 m", "0.6 m"), "to": ("1.5 m", "0.6 m"), "on_body": 2}
     never = rf.Restrainer(**loose, stiffness="1 MN/m", slack="100 m")
@@ -172,20 +172,20 @@ def test_restrained_bodies_slide():
     assert held.peak_body_slip.values[0] > 1e-3
 
 
-def test_a_pull_beyond_friction_is_told():
+def test_load_beyond_friction_warns():
     pulled = rf.Load(at=("0 m", "0.3 m"), horizontal="4 kN", on_body=2)
     with pytest.warns(ModelWarning, match="body 2 slides under its restrainers and loads"):
         rf.System(rf.Stack(STATUE, PLINTH, interfaces=[ground(0.3)]), ground(0.2), pulled)
 
 
-def test_beyond_the_edge_there_is_a_warning():
+def test_slip_beyond_edge_warns():
     steady = rf.GroundMotion.from_arrays((np.full(81, 5.0), "m/s^2"), "0.01 s")
     with pytest.warns(ModelWarning, match="beyond the edge of body 2"):
         found = run_of([ground(0.2)], rf.RigidGround(), steady, free_vibration=None)
     assert found.peak_body_slip.values[0] > 0.25
 
 
-def test_what_does_not_go_together_is_refused():
+def test_incompatible_parts_are_refused():
     stack = rf.Stack(STATUE, PLINTH, interfaces=[ground(0.3)])
     with pytest.raises(AssemblyError, match="body 1: with a kinetic friction of 2"):
         rf.System(stack.replace(interfaces=[ground(2.0)]))
@@ -194,7 +194,7 @@ def test_what_does_not_go_together_is_refused():
         rf.System(stack, tendon)
 
 
-def test_the_friction_of_each_base_is_told():
+def test_description_lists_friction_of_each_base():
     system = rf.System(
         rf.Stack(STATUE, PLINTH, interfaces=[ground(0.3, 0.2, impact="stick")]), rf.RigidGround()
     )
@@ -206,7 +206,7 @@ def test_the_friction_of_each_base_is_told():
 
 @pytest.mark.parametrize("corners", [0b1101, 0b1110, 0b1111])
 @pytest.mark.parametrize("slip", [2.0, -2.0])
-def test_the_energy_that_chooses_among_impacts_is_what_they_lose(corners, slip):
+def test_trial_impact_loss_equals_kinetic_energy_lost(corners, slip):
     stack = rf.Stack(STATUE, PLINTH, interfaces=[ground(0.3)])
     system = assemble((stack, ground(0.4))).setting.contact_model().system
     state, flying = np.zeros(12), system.with_bearing_corners(0, 0, 0)

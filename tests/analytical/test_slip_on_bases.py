@@ -41,7 +41,7 @@ def flags(found):
 
 
 @BASES
-def test_without_friction_the_ground_moves_beneath_the_block(base):
+def test_frictionless_block_slips_by_ground_displacement(base):
     found = run(base.replace(friction=0.0))
     ground = motion().si.horizontal.samples
     step = 0.05  # linear between samples: velocity and displacement of the ground by parts
@@ -55,7 +55,7 @@ def test_without_friction_the_ground_moves_beneath_the_block(base):
 
 @BASES
 @pytest.mark.parametrize("rule", ["contact-state", "leading-corner"])
-def test_what_flies_at_first_has_not_slipped(base, rule):
+def test_slip_is_zero_at_start_in_flight(base, rule):
     system = rf.System(BLOCK, base.replace(friction=0.3), restraint=rule)
     above = rf.InitialState(rotation="0.1 rad", vertical_displacement="0.3 m")
     found = system.simulate(motion(), initial=above, duration="0.3 s")
@@ -64,7 +64,7 @@ def test_what_flies_at_first_has_not_slipped(base, rule):
 
 
 @BASES
-def test_what_flies_at_last_has_slipped_as_far_as_it_bore(base):
+def test_peak_slip_excludes_final_flight(base):
     fast = np.arange(60) < 30
     across, up = np.where(fast, 5.0, 0.0), np.where(fast, 0.0, -40.0)  # then the ground falls away
     thrown = rf.GroundMotion.from_arrays(
@@ -81,7 +81,7 @@ def test_what_flies_at_last_has_slipped_as_far_as_it_bore(base):
 
 @BASES
 @pytest.mark.parametrize("rule", ["contact-state", "leading-corner"])
-def test_friction_without_end_holds_the_base(base, rule):
+def test_infinite_friction_converges_to_held_base(base, rule):
     # held, the point changes before the restitution of an impact is taken; with friction in it
     if base is PADS and rule == "contact-state":
         base = base.replace(restitution=1.0)
@@ -111,7 +111,7 @@ def test_energies_balance_with_the_work_of_friction(base):
     assert (np.diff(found.dissipated_energy) >= -1e-9 * found.dissipated_energy.max().item()).all()
 
 
-def test_a_run_tells_slip_and_its_events():
+def test_run_reports_slip_and_its_events():
     found = run(PADS.replace(friction=0.25))
     assert found.attrs["verdict"].startswith("Slid 0.")
     kinds = found.event_kind.attrs["flag_meanings"].split()
@@ -123,7 +123,7 @@ def test_a_run_tells_slip_and_its_events():
     assert "mu_k" in rf.System(BLOCK, PADS.replace(friction=0.25)).describe()
 
 
-def test_small_rotations_are_refused_and_checked_friction_holds():
+def test_slip_refuses_small_rotation_and_checked_friction_holds():
     pads = PADS.replace(friction=0.25)
     with pytest.raises(AssemblyError, match="finite"):
         rf.System(BLOCK, pads, rotation="small")
@@ -133,7 +133,7 @@ def test_small_rotations_are_refused_and_checked_friction_holds():
         PADS.replace(kinetic_friction=0.2)
 
 
-def test_an_impulse_dissipates_whatever_the_friction():
+def test_coulomb_impulse_dissipates_for_any_friction():
     rng = np.random.default_rng(5)
     for _ in range(300):
         root = rng.normal(size=(2, 2))
@@ -156,7 +156,7 @@ PULSE = rf.GroundMotion.sine_pulse(amplitude="-4 m/s^2", frequency="1.5 Hz")
 
 
 @pytest.mark.parametrize("beside", ["0 m", "0.1 m"])
-def test_both_ends_that_land_at_once_keep_what_their_restitution_leaves(beside):
+def test_simultaneous_landing_obeys_restitution_and_friction_cone(beside):
     """Each of its own speed, with friction of both within the cone; one alone as it tips the other.
 
     Neither waits for the other, so that a block that falls flat stays so.
@@ -197,7 +197,7 @@ def stacked(upper, lower, pads=PADS):
 
 @pytest.mark.long
 @pytest.mark.parametrize("frictions", [(0.2, 0.25), (0.2, 1.0), (1.0, 0.2)])
-def test_bodies_of_a_stack_slip_within_the_cone_of_friction(frictions):
+def test_stack_slip_stays_within_friction_cone(frictions):
     found = stacked(*frictions)
     assert found.energy_residual < 1e-8
     for k, friction in enumerate(frictions):
@@ -217,7 +217,7 @@ def test_bodies_of_a_stack_slip_within_the_cone_of_friction(frictions):
 
 
 @pytest.mark.long
-def test_a_stack_with_friction_without_end_is_held():
+def test_stack_with_infinite_friction_is_held():
     pads = PADS.replace(restitution=1.0)
     held, found = stacked(None, None, pads), stacked(1e8, 1e8, pads)
     far = abs(found.body_rotation - held.body_rotation).max().item()
@@ -226,7 +226,7 @@ def test_a_stack_with_friction_without_end_is_held():
 
 @pytest.mark.long
 @pytest.mark.parametrize(("upper", "lower"), [(0.2, None), (None, 0.25)])
-def test_a_base_without_friction_holds_beside_one_with_friction(upper, lower):
+def test_held_base_matches_infinite_friction_in_mixed_stack(upper, lower):
     pads = PADS.replace(restitution=1.0)
     held = stacked(upper, lower, pads)
     found = stacked(upper or 1e8, lower or 1e8, pads)
@@ -237,7 +237,7 @@ def test_a_base_without_friction_holds_beside_one_with_friction(upper, lower):
 
 
 @pytest.mark.long
-def test_any_mixture_and_bases_that_all_give_way_are_one(monkeypatch):
+def test_general_and_compliant_slipping_chains_agree(monkeypatch):
     one = stacked(0.2, 0.25)
     monkeypatch.setattr(model, "SlippingChain", SlippingRigidChain)
     other = stacked(0.2, 0.25)
@@ -246,7 +246,7 @@ def test_any_mixture_and_bases_that_all_give_way_are_one(monkeypatch):
         np.testing.assert_allclose(one[name], other[name], rtol=0.0, atol=1e-12)
 
 
-def test_friction_in_a_stack_is_computed():
+def test_checked_friction_in_stack_is_refused():
     stack = rf.Stack(STATUE, PLINTH, interfaces=[PADS.replace(friction=0.3)])
     with pytest.raises(AssemblyError, match="is computed"):
         rf.System(stack, SOIL.replace(friction=0.3), sliding="checked")
@@ -265,7 +265,7 @@ def two_bodies(**friction):
 
 
 @pytest.mark.parametrize("friction", [1e-12, 1e-8, 1e-6])
-def test_hardly_any_friction_is_next_to_none(friction):
+def test_tiny_friction_approaches_frictionless_slip(friction):
     none, some = (two_bodies(friction=one).body_slip for one in (0.0, friction))
     assert float(abs(none).max()) > 0.05
     np.testing.assert_allclose(some, none, rtol=0.0, atol=friction)
@@ -274,13 +274,13 @@ def test_hardly_any_friction_is_next_to_none(friction):
 @pytest.mark.parametrize(
     "friction", [1e5, 1e15, *(pytest.param(one, marks=pytest.mark.long) for one in (1e7, 1e9))]
 )
-def test_friction_as_great_as_one_likes_holds(friction):
+def test_arbitrarily_large_friction_holds(friction):
     held, slippery = (two_bodies(**given).rotation for given in ({}, {"friction": friction}))
     np.testing.assert_allclose(slippery, held, rtol=0.0, atol=1e-12)
 
 
 @pytest.mark.parametrize(("number", "ends"), [(189, "0.1 s"), (169, "0.13 s"), (174, "0.13 s")])
-def test_great_friction_is_compared_no_finer_than_what_presses_is_known(number, ends):
+def test_large_friction_does_not_chatter_from_rounding(number, ends):
     """Each body slipped and stuck in turn, without end, as its friction came to the limit."""
     drawn_system, shake = drawn("friction on pads", np.random.default_rng(number))
     block = drawn_system.parts["block"]
@@ -309,7 +309,7 @@ def test_a_squat_block_slides_where_its_base_has_friction(base):
     assert float(found.peak_slip) > 0.01
 
 
-def test_a_corner_of_a_squat_body_keeps_nothing_of_its_speed_on_pads():
+def test_squat_block_has_zero_restitution_on_pads():
     squat = rf.Block(width="2 m", height="1 m", mass="4 t")
     assert squat.maximum_restitution == pytest.approx(-0.2)
     system = rf.System(squat, PADS.replace(friction=0.3))
@@ -332,7 +332,7 @@ def test_a_corner_of_a_squat_body_keeps_nothing_of_its_speed_on_pads():
         (358, "2.05 s"),
     ],
 )
-def test_corners_that_rounding_sends_back_to_their_pads_leave(number, ends):
+def test_corners_of_squat_bodies_do_not_chatter_from_rounding(number, ends):
     """Each came down and left in turn, without end, as it touched its pad on its way up."""
     system, motion = drawn("stack of squat bodies", np.random.default_rng(number))
     with plainly():
@@ -342,7 +342,7 @@ def test_corners_that_rounding_sends_back_to_their_pads_leave(number, ends):
     assert int(found.status) <= Status.TOPPLED
 
 
-def test_a_body_that_would_slip_hardly_any_way_is_held_where_its_end_turns_back():
+def test_body_with_negligible_slip_does_not_chatter():
     """It slipped to either side at the middle and at a corner, and its end left and landed."""
     system, motion = drawn("stack of squat bodies", np.random.default_rng(2412))
     with plainly():
@@ -351,7 +351,7 @@ def test_a_body_that_would_slip_hardly_any_way_is_held_where_its_end_turns_back(
     assert float(found.energy_residual) < 1e-8
 
 
-def test_overturning_at_the_instant_of_another_event_is_no_repetition():
+def test_overturning_at_instant_of_another_event_ends_run():
     """The state and the mode were those after the landing that came before, and the run ended."""
     system, motion = drawn("stack of squat bodies", np.random.default_rng(840))
     with plainly():
@@ -361,7 +361,7 @@ def test_overturning_at_the_instant_of_another_event_is_no_repetition():
 
 
 @pytest.mark.long
-def test_friction_of_millions_lets_bounces_and_slips_end():
+def test_bounces_and_slips_end_at_huge_friction():
     """A body let go of its base and was held, without end, as the one below slipped."""
     system, motion = drawn("stack with friction of any size", np.random.default_rng(650))
     found = system.simulate(motion, duration="1.03 s", outputs=("energy",), second_look=False)

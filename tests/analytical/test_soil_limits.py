@@ -50,7 +50,7 @@ def apart(one, other, name="rotation"):
 @pytest.mark.wide
 @pytest.mark.parametrize("rotation", ["finite", "small"])
 @pytest.mark.parametrize("rule", RULES)
-def test_on_firm_soil_the_stack_moves_as_a_block_on_pads(rule, rotation):
+def test_coupled_stack_on_firm_soil_converges_to_block_on_pads(rule, rotation):
     """Error 1/k0 where landings take no impulse: that of the cap's own inertia would remain."""
     options = {"restraint": rule, "rotation": rotation}
     with pytest.warns(ModelWarning, match="eps_max"):
@@ -70,7 +70,7 @@ def test_on_firm_soil_the_stack_moves_as_a_block_on_pads(rule, rotation):
     assert apart(response, exact, "vertical_displacement") < 1e-3
 
 
-def test_on_firm_soil_a_heavy_cap_takes_the_impulses_of_landings():
+def test_heavy_cap_on_firm_soil_converges_to_block_on_pads():
     """With eps_max the cap recoils at a landing, however firm the soil: error 1/m_c."""
     exact = run(block(), pads())
     assert exact.impact_count.item() > 0
@@ -84,7 +84,7 @@ def test_on_firm_soil_a_heavy_cap_takes_the_impulses_of_landings():
     assert errors[-1] < 1e-4
 
 
-def test_the_cascade_on_firm_soil_is_the_block_on_pads():
+def test_cascade_on_firm_soil_converges_to_block_on_pads():
     exact = run(block(), pads())
     stiffness = np.array([1e9, 1e10, 1e11])
     errors = []
@@ -102,7 +102,7 @@ def test_the_cascade_on_firm_soil_is_the_block_on_pads():
 
 @pytest.mark.parametrize("separation", ["displacement", "pressure"])
 @pytest.mark.parametrize("rule", RULES)
-def test_on_stiff_pads_block_and_cap_move_as_one_body(rule, separation):
+def test_block_and_cap_on_stiff_pads_converge_to_one_body(rule, separation):
     """Error 1/beta^2, also while the cap lifts, as long as the block stays on its pads."""
     ground = soil("12 MPa", separation=separation)
     under = cap(width="2.4 m")
@@ -125,7 +125,7 @@ def test_on_stiff_pads_block_and_cap_move_as_one_body(rule, separation):
     assert np.mean(response.soil_contact_state.values == exact.contact_state.values) > 0.99
 
 
-def test_frequencies_of_the_stack_tend_to_those_of_its_parts():
+def test_stack_frequencies_converge_to_those_of_its_parts():
     stiff = rf.System(block(), pads(2000), cap(), soil()).frequencies().angular_frequency[:2]
     body = rf.System(block(), cap(), soil()).frequencies().angular_frequency
     np.testing.assert_allclose(stiff, body, rtol=1e-4)
@@ -138,7 +138,7 @@ def test_frequencies_of_the_stack_tend_to_those_of_its_parts():
 
 
 @pytest.mark.parametrize("rule", RULES)
-def test_a_plate_without_mass_leaves_the_block_on_its_soil(rule):
+def test_massless_plate_leaves_block_on_soil(rule):
     plate = cap(width="2.4 m", height="0 m", mass="0 kg")
     one, other = (
         run(block(), *parts, restraint=rule, peak=-3.0) for parts in ((soil(),), (plate, soil()))
@@ -150,7 +150,7 @@ def test_a_plate_without_mass_leaves_the_block_on_its_soil(rule):
     assert (other.peak_rotation > 2.0 * other.uplift_angle).item()
 
 
-def test_a_plate_without_mass_may_also_come_from_its_density():
+def test_massless_plate_can_be_given_by_density():
     thin = rf.CushionCap(height="0 m", density="2500 kg/m^3", depth="4 m")
     assert thin.si.mass_at(2.4) == 0.0
     response = run(block(), thin, soil())
@@ -161,7 +161,7 @@ def test_a_plate_without_mass_may_also_come_from_its_density():
 
 @pytest.mark.parametrize("width", ["2.4 m", "3.2 m"])
 @pytest.mark.parametrize("scene", ["body", "cascade"])
-def test_the_response_is_smooth_down_to_no_mass_at_all(scene, width):
+def test_response_is_smooth_down_to_zero_cap_mass(scene, width):
     parts = () if scene == "body" else (pads(),)
     options = {} if scene == "body" else {"coupling": scene}
 
@@ -179,7 +179,7 @@ def test_the_response_is_smooth_down_to_no_mass_at_all(scene, width):
 
 
 @pytest.mark.parametrize("mass", ["0 kg", "1 kg"])
-def test_the_coupled_equations_take_a_least_share_of_mass_and_say_so(mass):
+def test_too_light_cap_in_coupled_equations_warns(mass):
     plate = cap(width="3.2 m", height="0 m", mass=mass)
     with pytest.warns(ModelWarning, match="coupled equations are solved with") as caught:
         light = run(block(), pads(), plate, soil())
@@ -197,7 +197,7 @@ def test_the_coupled_equations_take_a_least_share_of_mass_and_say_so(mass):
     assert apart(light, run(block(), pads(), heavier, soil())) < 0.05
 
 
-def test_a_cap_as_heavy_as_the_least_share_is_no_matter_to_warn_about():
+def test_cap_above_least_mass_does_not_warn():
     rf.System(block(), pads(), cap(mass="50.1 kg"), soil())
     rf.System(block(), pads(), cap(mass="0 kg"), soil(), coupling="cascade")
     rf.System(block(), cap(mass="0 kg"), soil())
@@ -207,7 +207,7 @@ def test_a_cap_as_heavy_as_the_least_share_is_no_matter_to_warn_about():
 
 
 @pytest.mark.parametrize("rule", RULES)
-def test_without_dampers_both_rules_of_separation_are_one(rule):
+def test_separation_rules_agree_without_damping(rule):
     one, other = (
         run(block(), soil(damping_ratio=0.0, separation=separation), restraint=rule)
         for separation in ("displacement", "pressure")
@@ -219,7 +219,7 @@ def test_without_dampers_both_rules_of_separation_are_one(rule):
         np.testing.assert_allclose(one[name], other[name], rtol=rtol, atol=1e-13, err_msg=name)
 
 
-def test_with_dampers_the_rules_differ_and_only_one_of_them_pulls():
+def test_separation_by_pressure_does_not_pull_with_damping():
     one, other = (
         run(block(), soil(damping_ratio=0.5, separation=separation), peak=-2.5)
         for separation in ("displacement", "pressure")
@@ -235,7 +235,7 @@ def test_with_dampers_the_rules_differ_and_only_one_of_them_pulls():
 
 @pytest.mark.parametrize("coupling", [None, "coupled", "cascade"])
 @pytest.mark.parametrize("factor", [0.25, 4.0])
-def test_a_scene_grows_with_its_size(factor, coupling):
+def test_response_scales_with_scene_size(factor, coupling):
     """All lengths times f, times by sqrt(f), stiffnesses as weights over lengths."""
 
     def scene(f):

@@ -66,7 +66,7 @@ def test_half_sine_on_an_undamped_oscillator(half_sine):
         np.testing.assert_allclose(found, expected, rtol=1e-6)
 
 
-def test_after_a_short_pulse_an_oscillator_swings_with_its_impulse(half_sine):
+def test_short_pulse_gives_spectral_velocity_of_its_impulse(half_sine):
     """Peak velocity of the relative motion is the ground's velocity step."""
     (found,) = spectrum(half_sine, [2000.0], 0.0, "spectral_velocity")
     assert found == pytest.approx(2.0 * 2.0 * HALF / math.pi, rel=1e-6)
@@ -183,7 +183,7 @@ def test_peaks_between_samples(period, xi):
 SPECTRA = ("spectral_displacement", "spectral_velocity", "absolute_spectral_acceleration")
 
 
-def test_a_peak_is_found_where_the_velocity_grows_and_decays_after_it():
+def test_peak_is_found_where_ground_reverses_within_step():
     """Value and slope at the end of the step do not bound it: the ground reverses in the step."""
     samples = np.array([1.4485, 0.5495, -1.3558, 0.7554])
     motion = rf.GroundMotion.from_arrays((samples, "m/s^2"), "0.02 s")
@@ -193,7 +193,7 @@ def test_a_peak_is_found_where_the_velocity_grows_and_decays_after_it():
     np.testing.assert_allclose(values, expected, rtol=5e-5)
 
 
-def test_a_peak_is_found_where_the_velocity_first_grows_away_from_its_zero():
+def test_peak_is_found_where_velocity_chord_misleads():
     """At the zero of the chord of the velocity the acceleration is nearly zero."""
     samples = np.array([0.94, -0.88, 1.38, -0.68, 0.78, -1.77])
     motion = rf.GroundMotion.from_arrays((samples, "m/s^2"), "0.02 s")
@@ -203,7 +203,7 @@ def test_a_peak_is_found_where_the_velocity_first_grows_away_from_its_zero():
     np.testing.assert_allclose(values, expected, rtol=5e-5)
 
 
-def test_the_ground_may_stop_at_once_within_a_motion():
+def test_zero_padding_does_not_change_spectra_of_jumping_pulse():
     """Padded with zeros, a pulse that jumps at its end has the same spectra."""
     pulse = rf.GroundMotion.cosine_pulse("3 m/s^2", "1 Hz", cycles=0.3)
     still = rf.GroundMotion.from_arrays((np.zeros(200), "m/s^2"), (pulse.si.time_step, "s"))
@@ -244,14 +244,14 @@ def test_path_of_the_ground_is_exact_for_straight_lines():
         assert path.ground_displacement.values[k + 1] == pytest.approx(displacement, abs=1e-13)
 
 
-def test_the_greatest_displacement_may_lie_in_the_interval_in_which_the_ground_starts():
+def test_peak_ground_displacement_within_first_interval_is_found():
     """a = 2 - 50 t, so that v = 2 t - 25 t^2 is zero at the start and at 0.08 s."""
     motion = rf.GroundMotion.from_arrays(([2.0, -3.0], "m/s^2"), "0.1 s")
     found = intensity_measures(motion).peak_ground_displacement.item()
     assert found == pytest.approx(0.08**2 - 25.0 / 3.0 * 0.08**3, rel=1e-12)
 
 
-def test_the_greatest_displacement_may_lie_between_two_zeros_of_the_velocity_in_one_interval():
+def test_peak_ground_displacement_between_velocity_zeros_is_found():
     samples = np.array([1.0, -2.0, 2.0, -1.0])
     motion = rf.GroundMotion.from_arrays((samples, "m/s^2"), "0.1 s")
     fine = motion.resampled("0.0001 s", interpolation="linear")
@@ -302,7 +302,7 @@ def test_measures_of_a_sine_pulse():
 
 @pytest.mark.parametrize("cycles", [0.37, 0.61, 1.13])
 @pytest.mark.parametrize("level", [0.99, 0.9999, 0.99999])
-def test_a_level_is_exceeded_between_two_samples(cycles, level):
+def test_exceedance_between_samples_counts_in_durations(cycles, level):
     """About the peak of a sine, which is no sample here, for less than an interval."""
     pulse = rf.GroundMotion.sine_pulse("1 m/s^2", "1 Hz", cycles=cycles)
     assert not (np.abs(pulse.si.horizontal.samples) == 1.0).any()
@@ -315,7 +315,7 @@ def test_a_level_is_exceeded_between_two_samples(cycles, level):
     assert uplift.item() == pytest.approx((1.0 + more / 0.5) * width, abs=1e-9)
 
 
-def test_a_level_that_is_a_sample_of_a_pulse_is_exceeded_from_there_on():
+def test_bracketed_duration_starts_at_sample_equal_to_threshold():
     pulse = rf.GroundMotion.half_sine_pulse("2 m/s^2", "1 s")
     for place in (5, 10, 20):
         level = pulse.si.horizontal.samples[place]
@@ -323,7 +323,7 @@ def test_a_level_that_is_a_sample_of_a_pulse_is_exceeded_from_there_on():
         assert found.item() == pytest.approx(1.0 - 2.0 * place / 64.0, abs=1e-12)
 
 
-def test_a_second_that_reaches_the_level_between_two_samples_counts():
+def test_standardized_cav_counts_exceedance_between_samples():
     pulse = rf.GroundMotion.sine_pulse((0.025 * 9.80665 * 1.0001, "m/s^2"), "1 Hz", cycles=0.37)
     found = rf.intensity_measures(pulse)
     standard = found.standardized_cumulative_absolute_velocity.item()
@@ -331,7 +331,7 @@ def test_a_second_that_reaches_the_level_between_two_samples_counts():
 
 
 @pytest.mark.parametrize(("step", "lost"), [(0.01, 0.046), (0.02, 0.175)])
-def test_a_coarse_record_keeps_its_short_periods_when_it_is_refined(step, lost):
+def test_band_limited_refinement_restores_short_periods(step, lost):
     """A swell of 12 Hz, of which there are 8.3 and 4.2 samples per period."""
 
     def swell(between):
@@ -359,7 +359,7 @@ def test_a_coarse_record_keeps_its_short_periods_when_it_is_refined(step, lost):
         response_spectrum(swell(step), periods, interpolation="cubic")
 
 
-def test_an_analytic_pulse_needs_no_refining():
+def test_interpolation_does_not_change_spectrum_of_analytic_pulse():
     pulse = rf.GroundMotion.sine_pulse("2 m/s^2", "3 Hz")
     periods = (["0.05", "0.3"], "s")
     one, other = (
@@ -383,7 +383,7 @@ def test_fourier_transform_of_a_sine_pulse():
     np.testing.assert_allclose(transform, exact, atol=1e-9)
 
 
-def test_power_of_a_record_is_the_same_in_time_and_frequency():
+def test_parseval_identity_of_fourier_spectrum():
     samples = np.random.default_rng(5).normal(size=512)
     motion = rf.GroundMotion.from_arrays((samples, "m/s^2"), "0.01 s")
     found = fourier_spectrum(motion)
@@ -411,7 +411,7 @@ def record(request):
     return motion.window("20 s", "60 s") if motion.si.duration > 60.0 else motion
 
 
-def test_records_have_the_intensities_of_another_library(record):
+def test_record_intensities_match_eqsig(record):
     pytest.importorskip("eqsig")
     from eqsig import AccSignal, im
 
@@ -436,7 +436,7 @@ def test_records_have_the_intensities_of_another_library(record):
     [RECORDS[1], *(pytest.param(name, marks=pytest.mark.long) for name in RECORDS[::2])],
     indirect=True,
 )
-def test_records_have_the_spectra_of_another_library(record):
+def test_record_spectra_match_eqsig(record):
     """It sees peaks at samples only: give it the same straight lines, sampled eight times."""
     pytest.importorskip("eqsig")
     from eqsig import sdof

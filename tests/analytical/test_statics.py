@@ -38,7 +38,7 @@ def held(system, angle):
 
 @pytest.mark.parametrize("rotation", ["small", "finite"])
 @pytest.mark.parametrize(("width", "height"), [(2.4, 9.6), (3.0, 3.0)])
-def test_on_rigid_ground_the_corner_bears_the_weight(width, height, rotation):
+def test_restoring_moment_and_reactions_on_rigid_ground(width, height, rotation):
     block = rf.Block(width=f"{width} m", height=f"{height} m", mass="50 t")
     system = rf.System(block, rotation=rotation)
     weight, b, h = 50e3 * GRAVITY, 0.5 * width, 0.5 * height
@@ -258,7 +258,7 @@ class Held:
 @pytest.mark.parametrize("rule", RULES)
 @pytest.mark.parametrize("rotation", ["small", "finite"])
 @pytest.mark.parametrize("name", STACKS)
-def test_a_stack_moves_as_the_holding_couple_lets_it_go(name, rotation, rule):
+def test_released_stack_accelerates_by_holding_couple(name, rotation, rule):
     """Let go, M q'' is minus the couple, which works on phi + psi, and nothing else."""
     for angle in ANGLES:
         one = held_stack(name, angle, rotation, rule)
@@ -275,7 +275,7 @@ def test_a_stack_moves_as_the_holding_couple_lets_it_go(name, rotation, rule):
 @pytest.mark.parametrize("rule", RULES)
 @pytest.mark.parametrize("rotation", ["small", "finite"])
 @pytest.mark.parametrize("name", STACKS)
-def test_a_held_stack_balances_as_a_whole(name, rotation, rule):
+def test_forces_and_moments_of_held_stack_balance(name, rotation, rule):
     """Forces by hand: weights against the soil, the block's weight against the pads."""
     for angle in ANGLES:
         one = held_stack(name, angle, rotation, rule)
@@ -317,7 +317,7 @@ def test_the_couple_on_a_stack_is_the_slope_of_its_energy(name, rotation):
 
 
 @pytest.mark.parametrize("name", STACKS)
-def test_a_stack_at_small_rotation_has_the_stiffnesses_of_pads_and_soil_in_a_row(name):
+def test_small_rotation_stiffness_of_stack_is_series_of_pads_and_soil(name):
     system = stack(name)
     _, _, stiffness = _matrices(system)
     # the block is held: phi, r and Y are free
@@ -368,7 +368,7 @@ def scenes():
 
 @pytest.mark.parametrize("parts", list(scenes()))
 @pytest.mark.parametrize("rotation", ["small", "finite"])
-def test_every_rotation_below_a_right_angle_has_a_static_state(parts, rotation):
+def test_static_state_exists_for_all_rotations_below_right_angle(parts, rotation):
     system = rf.System(*parts, rotation=rotation)
     angles = np.linspace(-1.5, 1.5, 61)
     state = system.moment_rotation((angles, "rad"))
@@ -390,7 +390,7 @@ def test_every_rotation_below_a_right_angle_has_a_static_state(parts, rotation):
 
 
 @pytest.mark.parametrize("parts", list(scenes()))
-def test_upright_nothing_needs_to_be_held(parts):
+def test_upright_state_needs_no_holding_couple(parts):
     state = held(rf.System(*parts), 0.0)
     for name in ("restoring_moment", "base_moment", "held_vertical_displacement"):
         assert state[name].item() == 0.0

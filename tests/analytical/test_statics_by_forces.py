@@ -87,7 +87,7 @@ def closed(setting, rotation):
 
 
 @pytest.mark.parametrize(("block", "base", "rotation"), ALONE)
-def test_closed_forms_of_a_held_body(block, base, rotation):
+def test_held_body_matches_closed_forms(block, base, rotation):
     setting = rf.System(BLOCKS[block], BASES[base], rotation=rotation).setting
     body, weight, uplift = setting.body, setting.load.weight, setting.uplift_angle
     ratio = setting.settlement / body.half_width
@@ -110,7 +110,7 @@ def test_closed_forms_of_a_held_body(block, base, rotation):
 
 
 @pytest.mark.parametrize(("block", "base", "rotation"), ALONE)
-def test_slopes_of_the_forces_are_the_stiffnesses_that_bases_declare(block, base, rotation):
+def test_force_slopes_match_declared_stiffnesses(block, base, rotation):
     """Sizes and steps of runs are measured by these."""
     support = rf.System(BLOCKS[block], BASES[base], rotation=rotation).setting.support
     numbers, standing = support.base_numbers, support.standing
@@ -151,7 +151,7 @@ def printed_matrices(block, cap):
 
 
 @pytest.mark.parametrize("rotation", ["finite", "small"])
-def test_small_motion_of_a_stack_has_the_printed_matrices(rotation):
+def test_linearized_stack_has_printed_matrices(rotation):
     """Equation eq-coupled-small, in the order Y, phi, r, psi."""
     setting = rf.System(BLOCKS["slender"], BASES["pads"], CAP, BASES["bed"], rotation=rotation)
     setting = setting.setting
@@ -167,7 +167,7 @@ def test_small_motion_of_a_stack_has_the_printed_matrices(rotation):
 @pytest.mark.parametrize("restraint", ["contact-state", "leading-corner", "centre"])
 @pytest.mark.parametrize("inclination", ["0 deg", "0.8 deg", "-0.5 deg"])
 @pytest.mark.parametrize("block", ["slender", "eccentric"])
-def test_a_stack_at_rest_is_not_accelerated(block, inclination, restraint, rotation):
+def test_stack_at_rest_has_zero_acceleration(block, inclination, restraint, rotation):
     setting = rf.System(
         BLOCKS[block], BASES["pads"], CAP, BASES["bed"], inclination=inclination,
         restraint=restraint, rotation=rotation,
@@ -184,7 +184,7 @@ def test_a_stack_at_rest_is_not_accelerated(block, inclination, restraint, rotat
 
 @pytest.mark.parametrize("base", BASES)
 @pytest.mark.parametrize("block", BLOCKS)
-def test_work_on_a_held_body_is_its_energy(block, base):
+def test_stored_energy_of_held_body_equals_work(block, base):
     setting = rf.System(BLOCKS[block], BASES[base]).setting
     link = setting.support.standing.chain.bodies[0]
     body, law = link.part
@@ -311,7 +311,7 @@ def test_the_couple_on_three_bodies_is_the_slope_of_their_energy():
 
 
 @pytest.mark.parametrize("stiffness", ["1e10 N/m", "2e11 N/m", "1e13 N/m", "1e15 N/m"])
-def test_a_body_on_practically_rigid_pads_is_one_with_the_body_below(stiffness):
+def test_body_on_nearly_rigid_pads_moves_with_body_below(stiffness):
     """Pads of very different stiffness: the lower body, eccentric, leans on soft ones."""
     soft = rf.TwoSpringSupport(stiffness="1 MN/m", damping_ratio=0.1)
     stiff = rf.TwoSpringSupport(stiffness=stiffness, damping_ratio=0.1)
@@ -349,7 +349,7 @@ class ProppedPads(ElasticPads):
         return ext.BaseForce(found.upward - PROP * (middle - 0.01), moment, found.dissipated)
 
 
-def test_a_law_that_pushes_is_in_equilibrium_at_rest_and_at_the_start_of_a_run():
+def test_base_with_vertical_thrust_starts_in_equilibrium():
     body = rigid_body(left=0.5, right=0.5, height=2.0, inertia=1.5, restraint=CENTRE,
                    small_rotation=False, gravity=G)  # fmt: skip
     pads = pads_numbers(body, stiffness=2000.0, damping=3.0, restitution=(0.9, 0.9)).law

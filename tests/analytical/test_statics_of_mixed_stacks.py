@@ -31,14 +31,14 @@ SCENES = {
 
 
 @pytest.mark.parametrize("name", SCENES)
-def test_beyond_its_lift_the_highest_body_rocks_whatever_it_stands_on(name):
+def test_highest_body_rocks_after_lift_off_on_any_base(name):
     state = held(*SCENES[name])
     np.testing.assert_allclose(state.restoring_moment, statue_alone(ABOVE_LIFT), rtol=1e-12)
     assert (state.held_contact_state == 2).all()  # on its right corner
 
 
 @pytest.mark.parametrize("name", SCENES)
-def test_both_branches_meet_where_the_corner_lifts(name):
+def test_restoring_moment_is_continuous_at_lift_off(name):
     angles = np.linspace(0.0005, 0.03, 60)
     state = held(*SCENES[name], angles=angles)
     couple, lifts = state.restoring_moment.values, statue_alone(angles)
@@ -53,7 +53,7 @@ def test_both_branches_meet_where_the_corner_lifts(name):
     np.testing.assert_allclose(opposite.base_moment, -state.base_moment, rtol=1e-9)
 
 
-def test_what_is_below_carries_the_weight_at_the_corner():
+def test_body_below_carries_weight_at_bearing_corner():
     (moment,) = np.unique(held(*SCENES["statue on a block on pads"]).base_moment.values.round(6))
     # the block with a mass of 1 t at its upper right corner of the joint
     middle, level = (1.0 * 0.4) / 5.0, (4.0 * 2.0 + 1.0 * 4.0) / 5.0
@@ -66,7 +66,7 @@ def test_what_is_below_carries_the_weight_at_the_corner():
     assert moment == pytest.approx(5e3 * GRAVITY * across, rel=1e-9)
 
 
-def test_bodies_that_give_way_above_the_base_that_lifts():
+def test_stiff_tied_stack_rocks_as_one_body_on_rigid_base():
     # a statue that is tied down to a block on rigid ground, on stiff pads between them
     stiff = rf.TwoSpringSupport(stiffness="400 MN/m", damping_ratio=0.1)
     ties = [
@@ -84,7 +84,7 @@ def test_bodies_that_give_way_above_the_base_that_lifts():
 
 
 @pytest.mark.filterwarnings("ignore:restrainer 1. its point:rockframe.errors.ModelWarning")
-def test_a_tie_pulls_on_what_has_lifted():
+def test_restrainer_pulls_on_lifted_body():
     tie = rf.Restrainer(on=("-0.4 m", "4.5 m"), to=("-2 m", "0 m"), stiffness="20 kN/m")
     scene = SCENES["statue on a block on pads"]
     tied, free = held(*scene, tie), held(*scene)
@@ -94,7 +94,7 @@ def test_a_tie_pulls_on_what_has_lifted():
 
 
 @pytest.mark.parametrize("ratio", [8, 40, 1000])
-def test_on_joints_that_hardly_give_way_the_highest_body_rocks_about_its_corner(ratio):
+def test_highest_body_rocks_about_its_corner_on_stiff_joints(ratio):
     """From a rotation of some microns over a metre on, far below those that are asked for."""
     block = rf.Block(width="1 m", height="2 m", mass="10 t")
     stiff = rf.TwoSpringSupport(frequency_ratio=1000, damping_ratio=0.1)

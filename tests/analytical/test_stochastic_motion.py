@@ -55,7 +55,7 @@ RECORDED = {
 
 
 @pytest.mark.parametrize("magnitude", RECORDED)
-def test_two_corners_come_nearer_to_recorded_motions_at_long_periods(magnitude):
+def test_two_corner_source_fits_recorded_long_periods_better(magnitude):
     ratios = {}
     for kind in ("one corner", "two corners", "unless given"):
         given = {} if kind == "unless given" else {"source": kind}
@@ -76,7 +76,7 @@ def test_two_corners_come_nearer_to_recorded_motions_at_long_periods(magnitude):
 @pytest.mark.parametrize(
     ("magnitude", "expected"), [(3.0, "one corner"), (5.99, "one corner"), (6.0, "two corners")]
 )
-def test_large_earthquakes_have_two_corners_unless_one_is_asked_for(magnitude, expected):
+def test_source_defaults_to_two_corners_for_large_magnitudes(magnitude, expected):
     motion = rf.GroundMotion.stochastic(magnitude, "20 km", 1)
     assert motion.metadata["source"] == expected
     assert motion == rf.GroundMotion.stochastic(magnitude, "20 km", 1, source=expected)
@@ -86,7 +86,7 @@ def test_large_earthquakes_have_two_corners_unless_one_is_asked_for(magnitude, e
 
 
 @pytest.mark.parametrize("magnitude", [4.0, 6.0, 7.5])
-def test_two_corners_keep_both_ends_of_the_spectrum(magnitude):
+def test_two_corner_source_preserves_both_ends_of_spectrum(magnitude):
     one = PointSource(magnitude, 20e3)
     two = replace(one, corners=Corners.TWO)
     lower, upper, share = two.two_corners
@@ -108,7 +108,7 @@ def test_two_corners_keep_both_ends_of_the_spectrum(magnitude):
     )
 
 
-def test_a_source_of_two_corners_is_told_and_built_again():
+def test_two_corner_source_survives_dict_round_trip():
     motion = rf.GroundMotion.stochastic(6.5, "15 km", 3, source="two corners", vertical=0.5)
     assert motion.metadata["source"] == "two corners"
     assert rf.GroundMotion.from_dict(motion.to_dict()) == motion
@@ -167,7 +167,7 @@ def test_saturation_bends_smoothly():
 # the target, against its limits --------------------------------------------------------------
 
 
-def test_long_waves_have_the_level_of_the_moment():
+def test_low_frequency_level_follows_seismic_moment():
     level = SMSIM.displacement_spectrum(np.array([0.0, 1e-4]))
     # Boore's units: dyn cm, g/cm^3, km/s, km; centimetres come out
     constant = 0.55 * 0.707 * 2.0 / (4.0 * math.pi * 2.72 * 3.5**3) * 1e-20
@@ -371,7 +371,7 @@ def test_ground_is_at_rest_before_and_after(magnitude, kilometres):
         assert abs(displacement[-1]) < 1e-4 * np.abs(displacement).max()
 
 
-def test_horizontal_and_vertical_do_not_know_of_one_another():
+def test_horizontal_and_vertical_components_are_uncorrelated():
     correlations = []
     for seed in range(40):
         si = rf.GroundMotion.stochastic(5.0, "20 km", seed, vertical=0.5).si
@@ -380,7 +380,7 @@ def test_horizontal_and_vertical_do_not_know_of_one_another():
     assert np.abs(correlations).max() < 0.5
 
 
-def test_time_step_does_not_change_what_the_motion_is():
+def test_mean_peak_does_not_depend_on_time_step():
     fine, coarse = (
         np.mean([np.abs(accelerogram(SMSIM, step, seed)).max() for seed in range(60)])
         for step in (0.0025, 0.01)

@@ -54,7 +54,7 @@ def estimates(demand, size, limit, count, seeds=SEEDS):
         pytest.param(two_sides, 1, 1e-6, marks=pytest.mark.long),
     ],
 )
-def test_probabilities_and_their_variation_are_those_of_normal_numbers(demand, size, probability):
+def test_estimates_and_bounds_match_normal_probabilities(demand, size, probability):
     limit = norm.isf(probability if demand is one_side else 0.5 * probability)
     found, stated, lower, upper = estimates(demand, size, limit, 1000)
     scatter = found.std() / found.mean()
@@ -81,7 +81,7 @@ def test_more_samples_vary_less():
     assert scatter[0] > scatter[1] > scatter[2]
 
 
-def test_weights_make_the_whole_distribution():
+def test_sample_weights_reproduce_whole_distribution():
     levels = list(
         subset_levels(
             lambda _, scores: one_side(scores), 2, norm.isf(1e-5), count=20_000, share=0.1,
@@ -100,7 +100,7 @@ def test_weights_make_the_whole_distribution():
     assert mean == pytest.approx(0.0, abs=0.03)
 
 
-def test_the_first_level_alone_counts_independent_samples():
+def test_first_level_has_binomial_variation():
     (level,) = subset_levels(
         lambda _, scores: one_side(scores), 4, norm.isf(0.3), count=2000, share=0.1, max_levels=5,
         rng=np.random.default_rng(2),
@@ -153,7 +153,7 @@ def critical_amplitude():
     ("dispersion", "cases", "seeds"),
     [(0.1, 300, 6), (0.065, 500, 4)],
 )
-def test_a_block_under_a_pulse_of_random_size(dispersion, cases, seeds):
+def test_overturning_probability_under_pulse_of_random_size(dispersion, cases, seeds):
     probability = norm.sf(math.log(critical_amplitude() / 4.0) / dispersion)
     rows = []
     for seed in range(seeds):

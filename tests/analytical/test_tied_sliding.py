@@ -50,7 +50,7 @@ def kinds_of(found):
 
 @pytest.mark.long
 @BASES
-def test_friction_without_end_holds_the_base(base):
+def test_infinite_friction_holds_base(base):
     """To rounding; on rigid ground the equations are others, and what happens at once is so."""
     endless = {"friction": 1e9}
     if base is GROUND:
@@ -70,7 +70,7 @@ def test_friction_without_end_holds_the_base(base):
 @pytest.mark.long
 @BASES
 @pytest.mark.parametrize("stiffness", ["60 kN/m", "1 GN/m"])
-def test_a_tie_that_is_never_taut_changes_nothing(base, stiffness):
+def test_slack_tie_changes_nothing(base, stiffness):
     base = base.replace(friction=0.15, kinetic_friction=0.12)
     free = run(base)
     slack = run(base, ties(slack="100 m", damping=None, stiffness=stiffness)[0])
@@ -94,7 +94,7 @@ def test_mirror_images_are_the_same(base):
 
 
 @BASES
-def test_energies_balance_with_those_of_ties_and_friction(base):
+def test_energy_balances_with_ties_and_friction(base):
     found = run(base.replace(friction=0.15, kinetic_friction=0.1), *ties())
     assert found.peak_slip > 1e-3
     assert {"slip", "restrainer_taut", "restrainer_yield"} <= set(kinds_of(found))
@@ -114,7 +114,7 @@ def steady(acceleration, duration=2.0):
     return rf.GroundMotion.from_arrays((np.full(count, acceleration), "m/s^2"), "0.02 s")
 
 
-def test_a_tied_slide_decays_as_coulomb_has_it():
+def test_tied_slide_shows_coulomb_decay():
     """Each half of a vibration ends 2 mu g/omega^2 nearer to where the spring balances the push."""
     stiffness, friction, push = 2e4, 0.1, 6.0
     rate, grip = math.sqrt(stiffness / 1e3), friction * GRAVITY
@@ -136,7 +136,7 @@ def test_a_tied_slide_decays_as_coulomb_has_it():
     np.testing.assert_allclose(found.residual_slip, place, rtol=1e-9)
 
 
-def test_what_is_slipped_before_a_tie_breaks_is_newmarks_after():
+def test_slip_before_and_after_tie_fracture_in_closed_form():
     stiffness, friction, push, strength = 5e4, 0.2, 5.0, 1.5e3
     system = rf.System(
         LOW, rf.RigidGround(friction=friction),
@@ -155,7 +155,7 @@ def test_what_is_slipped_before_a_tie_breaks_is_newmarks_after():
     )
 
 
-def test_friction_that_a_tie_relieves_lets_go_as_it_breaks():
+def test_tie_fractures_after_uplift_time_of_free_block():
     """A tie that presses the block down on its corner takes its grip with it."""
     tie = rf.Restrainer(
         on=("-0.5 m", "3 m"), to=("-0.5 m", "-2 m"), stiffness="40 kN/m", strength="3 kN",
@@ -172,7 +172,7 @@ def test_friction_that_a_tie_relieves_lets_go_as_it_breaks():
 
 
 @pytest.mark.parametrize("stiffness", [1e6, 1e8])
-def test_a_very_stiff_tie_holds_the_corner_that_slides(stiffness):
+def test_very_stiff_tie_holds_sliding_corner(stiffness):
     """By half the slip that a spring of that stiffness allows, at each stiffness."""
     start = rf.InitialState(rotation="0.1 rad")
     options = {"duration": "0.15 s", "initial": start, "accuracy": "reference"}
@@ -187,7 +187,7 @@ def test_a_very_stiff_tie_holds_the_corner_that_slides(stiffness):
     assert found.energy_residual < 1e-8
 
 
-def test_a_preload_that_friction_cannot_hold_is_told():
+def test_preload_beyond_friction_warns():
     pulls = rf.Restrainer(
         on=("-0.5 m", "0.5 m"), to=("-2 m", "0.5 m"), stiffness="10 kN/m", preload="2 kN"
     )
@@ -200,7 +200,7 @@ def test_a_preload_that_friction_cannot_hold_is_told():
     assert strong.peak_slip == 0.0
 
 
-def test_a_wall_and_a_load_join_in():
+def test_sliding_block_with_wall_and_load():
     wall = rf.RearWall(side="left", stiffness="2 MN/m", damping="10 kN s/m", gap="10 mm")
     load = rf.Load(at=("0.1 m", "3 m"), vertical="2 kN", horizontal="0.2 kN")
     found = run(rf.RigidGround(friction=0.2), wall, load)
@@ -236,7 +236,7 @@ def test_a_stack_slides_with_ties():
 
 
 @pytest.mark.long
-def test_friction_without_end_holds_the_bases_of_a_stack():
+def test_infinite_friction_holds_bases_of_stack():
     """A restitution acts on bases that friction holds, and otherwise on held ones."""
     bare, held = (
         run(*parts, restraint="leading-corner", **block)
@@ -249,7 +249,7 @@ def test_friction_without_end_holds_the_bases_of_a_stack():
     assert apart < 1e-12 * bare.peak_rotation
 
 
-def test_what_has_no_answer_is_refused():
+def test_unsupported_combinations_are_refused():
     bent = rf.Tendon(stiffness="5 MN/m", preload="2 kN")
     with pytest.raises(AssemblyError, match="shears it there: give the depth"):
         rf.System(BLOCK, rf.RigidGround(friction=0.5), bent).describe()
@@ -262,7 +262,7 @@ def test_what_has_no_answer_is_refused():
 
 
 @BASES
-def test_friction_that_is_checked_holds_and_tells(base):
+def test_checked_friction_holds_and_reports_would_slide(base):
     scene = rf.System(BLOCK, base.replace(friction=0.05), *ties(), sliding="checked")
     found = scene.simulate(duration="1 s", motion=rf.GroundMotion.from_arrays(
         (ACROSS, "m/s^2"), "0.05 s"
@@ -272,7 +272,7 @@ def test_friction_that_is_checked_holds_and_tells(base):
 
 
 @pytest.mark.parametrize("seed", [1, 2])
-def test_a_block_that_comes_to_rest_as_it_slides_gains_no_energy(seed):
+def test_block_coming_to_rest_while_sliding_gains_no_energy(seed):
     """Bounces give the momentum upwards that is left, and friction takes its part of that."""
     rng = np.random.default_rng(seed)
     across = 5.0 * np.convolve(rng.normal(size=100), np.ones(6) / 6.0**0.5, "same")

@@ -23,7 +23,7 @@ def pulls(rotation):
 
 
 @pytest.mark.parametrize("share", [0.1, 0.5, 0.9, 0.99, 1.01, 1.2, 3.0])
-def test_a_tie_that_breaks_holds_up_to_its_strength(share):
+def test_tie_holds_up_to_its_strength(share):
     """At the height of a body without it, it would be broken from a share of 0.29 on."""
     rotation = share * STRENGTH / pulls(1e-6) * 1e-6
     held = rf.System(BLOCK, PADS, HOLD_DOWN, restraint="centre")
@@ -34,7 +34,7 @@ def test_a_tie_that_breaks_holds_up_to_its_strength(share):
     assert more == pytest.approx(expected, rel=1e-4, abs=1e-6 * HALF * STRENGTH)
 
 
-def test_a_tie_between_bodies_breaks_in_the_same_way_however_many_rotations_are_given():
+def test_tie_fracture_does_not_depend_on_number_of_rotations():
     lower = rf.Block(width="1 m", height="1 m", mass="1 t")
     tie = HOLD_DOWN.replace(to=("-0.5 m", "0.5 m"), to_body=2)
     stack = rf.Stack(BLOCK, lower, interfaces=[PADS])
@@ -48,7 +48,7 @@ def test_a_tie_between_bodies_breaks_in_the_same_way_however_many_rotations_are_
     assert alone[0] == pytest.approx(stronger.setting.statics(rotations[0]).restoring_moment)
 
 
-def test_points_that_meet_but_for_rounding_meet():
+def test_coincident_tie_points_tolerate_rounding():
     """A tie of no length, of points that are given by heights of bodies, added up."""
     statue = rf.Block(width="1.294 m", height="3.574 m", mass="146 kg")
     drum = rf.Block(width="1.636 m", height="1.1 m", mass="24 t")

@@ -82,7 +82,7 @@ def recorded() -> rf.HorizontalPair:
 
 
 @pytest.mark.parametrize("which", PYROTD)
-def test_as_an_independent_library_has_it(which):
+def test_rotated_spectra_match_stored_pyrotd_values(which):
     pair = made() if which == "made" else recorded()
     found = rf.rotated_spectrum(pair, (PERIODS, "s"))
     for name, expected in PYROTD[which].items():
@@ -97,7 +97,7 @@ def test_as_an_independent_library_has_it(which):
         assert float(average[mine]) == pytest.approx(expected, rel=0.005)
 
 
-def test_that_library_itself_where_it_is_installed():
+def test_rotated_spectra_match_installed_pyrotd():
     pyrotd = pytest.importorskip("pyrotd", reason="pyrotd is not installed")
     padded = [np.concatenate([one, np.zeros(40_000)]) for one in components()]
     theirs = pyrotd.calc_rotated_spec_accels(
@@ -121,7 +121,7 @@ def displacement(samples: np.ndarray, step: float, period: float, damping: float
     return lsim(system, ground, time)[1]
 
 
-def test_as_scipy_has_it():
+def test_rotated_spectra_match_scipy():
     pair = rf.HorizontalPair(noise(1), noise(2, 250), noise(3))
     periods, ratios = np.array([0.07, 0.3, 5.0]), (0.02, 0.1)
     found = rf.rotated_spectrum(pair, (periods, "s"), ratios)
@@ -144,7 +144,7 @@ def test_as_scipy_has_it():
             assert ratio == pytest.approx(vertical / np.median(peaks), rel=1e-3)
 
 
-def test_every_direction_is_the_spectrum_of_the_rotated_motion():
+def test_rotated_spectrum_matches_spectra_of_rotated_motions():
     pulse = rf.GroundMotion.sine_pulse("1 m/s^2", "1 Hz")
     other = rf.GroundMotion.from_arrays((np.zeros(len(pulse)), "m/s^2"), pulse.time_step)
     periods = ([0.0, 0.05, 0.3, 1.0, 5.0], "s")
@@ -169,7 +169,7 @@ def test_every_direction_is_the_spectrum_of_the_rotated_motion():
         np.testing.assert_allclose(found[NAMES[2]], both, rtol=1e-9, atol=1e-9)
 
 
-def test_one_direction_only():
+def test_motion_in_one_direction_only():
     """Of a motion in one direction RotD50 is that of the cosine, RotD100 the motion's own."""
     motion = noise(4)
     angle = math.radians(30.0)
@@ -189,7 +189,7 @@ def test_one_direction_only():
     assert float(axes.major_arias_intensity) == pytest.approx(float(arias))
 
 
-def test_spectra_do_not_depend_on_the_sensors():
+def test_rotated_spectra_do_not_depend_on_sensor_orientation():
     pair = rf.HorizontalPair(noise(1), noise(2))
     other = pair.in_axes("31 deg")
     mine, yours = (
@@ -204,7 +204,7 @@ def test_spectra_do_not_depend_on_the_sensors():
         assert float(after[name]) == pytest.approx(float(before[name]), rel=1e-10)
 
 
-def test_along_the_principal_axes_components_are_uncorrelated():
+def test_components_along_principal_axes_are_uncorrelated():
     pair = rf.HorizontalPair(noise(5), noise(6, 280))
     axes = rf.measures.principal_axes(pair)
     along = pair.in_axes(f"{float(axes.major_axis_angle)!r} rad")
@@ -220,7 +220,7 @@ def test_along_the_principal_axes_components_are_uncorrelated():
     assert measured.arias_intensity.values == pytest.approx(factor * np.diag(matrix))
 
 
-def test_a_weak_pulse_at_a_right_angle_does_not_turn_the_axis_of_a_record():
+def test_weak_orthogonal_pulse_does_not_turn_principal_axis():
     pulse = rf.GroundMotion.sine_pulse("1e-6 m/s^2", "1 Hz", cycles=2)
     noise = np.random.default_rng(0).normal(size=len(pulse))
     record = rf.GroundMotion.from_arrays((noise, "m/s^2"), (pulse.si.time_step, "s"))
@@ -230,7 +230,7 @@ def test_a_weak_pulse_at_a_right_angle_does_not_turn_the_axis_of_a_record():
     assert abs(other.major_axis_angle.item()) == pytest.approx(0.5 * np.pi, abs=1e-6)
 
 
-def test_azimuths_and_the_vertical_component():
+def test_rotation_to_azimuth_includes_vertical_component():
     pair = rf.HorizontalPair.read(record_path("GEONET_20180212_211557_WPWS_20.V2A"))
     assert pair.first.metadata["component"] == "S16W"
     assert pair.vertical.metadata["component"] == "Up"
@@ -243,7 +243,7 @@ def test_azimuths_and_the_vertical_component():
     np.testing.assert_allclose(north.si.horizontal.samples, expected, atol=1e-12)
 
 
-def test_the_average_is_the_geometric_mean():
+def test_average_spectral_acceleration_is_geometric_mean():
     motion = noise(7)
     periods = np.linspace(0.2, 3.0, 15)
     spectrum = rf.response_spectrum(motion, (periods, "s"), 0.03).pseudo_spectral_acceleration
@@ -254,7 +254,7 @@ def test_the_average_is_the_geometric_mean():
 
 
 @pytest.mark.skipif(not COMPILED, reason="this run does without compilation")
-def test_compiled_and_plain_agree(monkeypatch):
+def test_compiled_and_uncompiled_spectra_agree(monkeypatch):
     rng = np.random.default_rng(3)
     held = [np.convolve(rng.normal(size=count), np.ones(3)) for count in (9000, 8000)]
     record = [rf.GroundMotion.from_arrays((one, "m/s^2"), "0.02 s") for one in held]
@@ -292,12 +292,12 @@ def test_compiled_and_plain_agree(monkeypatch):
         (lambda: rf.average_spectral_acceleration(3.0, ["1 s"]), "needs a GroundMotion"),
     ],
 )
-def test_what_is_refused(make, words):
+def test_invalid_pairs_are_refused(make, words):
     with pytest.raises(ComponentError, match=words):
         make()
 
 
-def test_azimuths_and_starts_must_fit():
+def test_pair_requires_matching_azimuths_and_start_times():
     def told(**metadata) -> rf.GroundMotion:
         motion = noise(1)
         return rf.GroundMotion(motion.si, metadata=metadata)
@@ -310,7 +310,7 @@ def test_azimuths_and_starts_must_fit():
         rf.HorizontalPair(told(record_time="10:00"), told(record_time="10:01"))
 
 
-def test_components_of_which_one_alone_shakes_vertically_are_warned_about():
+def test_vertical_motion_of_only_one_component_warns():
     one, other, upwards = (noise(seed) for seed in (1, 2, 3))
     with pytest.warns(RecordWarning, match="only the second component has a vertical one"):
         rf.HorizontalPair(one, other.with_vertical(upwards))
@@ -321,6 +321,6 @@ def test_components_of_which_one_alone_shakes_vertically_are_warned_about():
         assert all(each.si.vertical is not None for each in pair.components)
 
 
-def test_a_file_without_two_horizontals_is_no_pair():
+def test_file_without_two_horizontals_is_refused():
     with pytest.raises(RecordError, match="1 horizontal and 0 vertical components"):
         rf.HorizontalPair.read(b"time (s),acc (g)\n0,0\n0.01,0.1\n0.02,0\n")

@@ -71,7 +71,7 @@ def test_soil_too_soft_to_hold_the_block_has_no_rocking_frequency():
     assert response.overturned.item()
 
 
-def test_overdamped_modes_keep_their_own_rates():
+def test_overdamped_modes_are_separated():
     """Damping in proportion to stiffness: each mode is an oscillator of its own."""
     rng = np.random.default_rng(4)
     shapes = np.linalg.qr(rng.normal(size=(4, 4)))[0]
@@ -96,7 +96,7 @@ def test_a_strongly_damped_bed_has_the_frequencies_of_its_springs():
     assert damped.damping_ratio.values.max() == pytest.approx(3.0, rel=1e-9)
 
 
-def test_a_mode_that_nothing_brings_back_has_no_frequency():
+def test_mode_without_stiffness_has_no_frequency():
     """Neither stable nor unstable: stiffness and gravity balance exactly."""
     one = np.eye(1)
     (mode,) = vibration_modes(SmallMotion(("rotation",), one, 0.5 * one, 0.0 * one))
@@ -104,7 +104,7 @@ def test_a_mode_that_nothing_brings_back_has_no_frequency():
     assert math.isnan(mode.damping_ratio)
 
 
-def test_a_cap_given_by_its_density_has_the_mass_of_its_own_width():
+def test_cap_mass_from_density_uses_its_own_width():
     block = rf.Block(width="2.4 m", height="9.6 m", mass="50 t")
     soil = rf.WinklerSoil(stiffness="9 MPa", damping_ratio=0.15)
     dense, heavy = (
@@ -114,7 +114,7 @@ def test_a_cap_given_by_its_density_has_the_mass_of_its_own_width():
     assert dense.angular_frequency.values == pytest.approx(heavy.angular_frequency.values)
 
 
-def test_block_and_cap_rock_as_one_body():
+def test_frequencies_of_block_and_cap_as_one_body():
     block = rf.Block(width="2.4 m", height="9.6 m", mass="50 t")
     cap = rf.CushionCap(width="3.2 m", height="0.7 m", mass="16 t")
     soil = rf.WinklerSoil(stiffness="9 MPa", damping_ratio=0.15)
@@ -229,7 +229,7 @@ def test_weak_horizontal_motion_is_one_damped_oscillator(bed, rotation, rule):
 @pytest.mark.parametrize("rotation", ["finite", "small"])
 @pytest.mark.parametrize("rule", ["contact-state", "centre"])
 @pytest.mark.parametrize("damping_ratio", [0.0, 0.2])
-def test_two_springs_at_gauss_points_move_as_the_bed(damping_ratio, rule, rotation):
+def test_springs_at_gauss_points_match_bed(damping_ratio, rule, rotation):
     """k = b k0 and c = b c0 at b/sqrt(3): the same resultants as long as all of the base bears."""
     bed = Bed(damping_ratio=damping_ratio)
     apart = bed.half_width / math.sqrt(3.0)

@@ -85,7 +85,7 @@ def test_moment_and_contact_length_after_uplift(bed, ratio, printed):
 
 @pytest.mark.parametrize("rotation", ["small", "finite"])
 @pytest.mark.parametrize("bed", BEDS)
-def test_before_uplift_the_moment_is_that_of_the_whole_bed(bed, rotation):
+def test_moment_before_uplift_is_that_of_full_contact(bed, rotation):
     system = bed.system(rotation=rotation)
     shares = np.array([-0.99, -0.4, -1e-9, 0.0, 1e-12, 0.3, 0.999])
     angles = shares * bed.delta / bed.half_width
@@ -115,7 +115,7 @@ def test_against_many_strips(bed, rotation):
         assert length == pytest.approx(share, abs=2e-4)
 
 
-def test_the_moment_falls_to_zero_where_the_block_overturns_on_firm_soil():
+def test_moment_vanishes_at_overturning_angle_on_firm_soil():
     firm = replace(Bed(), stiffness=1e7)
     theta = math.atan(firm.half_width / firm.half_height)
     low, high = 0.9 * theta, theta
@@ -202,7 +202,7 @@ def test_the_moment_is_the_slope_of_the_energy(bed, rotation):
 
 
 @pytest.mark.parametrize("rotation", ["small", "finite"])
-def test_a_held_body_stays_level_when_the_rotation_is_its_balance(rotation):
+def test_moment_vanishes_at_neutral_soil_stiffness(rotation):
     """On soil just firm enough the upright body is in neutral balance up to second order."""
     bed = Bed()
     limit = 1.5 * bed.gravity * bed.half_height / bed.half_width**3

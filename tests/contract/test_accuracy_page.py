@@ -42,7 +42,7 @@ def _check_bound(name, bound, side, **others):
 
 
 @pytest.mark.parametrize("level", LEVELS)
-def test_the_run_of_the_page(level):
+def test_documented_run_is_reproduced(level):
     head = "| level | steps | rejected | energy residual | error of the peak rotation |"
     rows = {name: [float(cell) for cell in cells] for name, *cells in table(PAGE, head)}
     steps, rejected, residual, error = rows[level]

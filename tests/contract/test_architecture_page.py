@@ -22,7 +22,7 @@ TITLES = "A scene's way to its equations", "Adding an output", *(f"Adding a {one
 
 
 @pytest.mark.parametrize("title", TITLES)
-def test_files_that_it_names_are_there(title):
+def test_named_files_exist(title):
     named = [match.group() for match in PLACE.finditer(section(title))]
     assert named
     for name in named:
@@ -30,7 +30,7 @@ def test_files_that_it_names_are_there(title):
 
 
 @pytest.mark.parametrize("kind", ADDED)
-def test_names_of_its_tables_stand_in_the_example(kind):
+def test_names_in_tables_occur_in_example(kind):
     text = (ROOT / "examples" / f"own_{kind}.py").read_text(encoding="utf-8")
     rows = ROW.findall(section(f"Adding a {kind}"))
     assert len(rows) >= 3

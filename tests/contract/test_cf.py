@@ -220,7 +220,7 @@ def xarray_finds_the_same(dataset, tmp_path):
 
 
 @pytest.mark.parametrize("kind", GIVEN)
-def test_files_keep_to_cf(subtests, kind, tmp_path):
+def test_files_follow_cf_conventions(subtests, kind, tmp_path):
     dataset = GIVEN[kind]()
     dataset.to_netcdf(tmp_path / "given.nc")
     with netCDF4.Dataset(tmp_path / "given.nc") as file:
@@ -230,7 +230,7 @@ def test_files_keep_to_cf(subtests, kind, tmp_path):
                 function(**{name: known[name] for name in signature(function).parameters})
 
 
-def test_truth_values_read_as_words_and_as_truth():
+def test_flags_read_as_booleans_and_as_words():
     response = ON_PADS.simulate(FALL)
     assert response.overturned.dtype == bool
     assert (response.overturned.cf == "true").item()

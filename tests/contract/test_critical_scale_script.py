@@ -12,7 +12,7 @@ import rockframe as rf
 SCRIPT = Path(__file__).resolve().parents[2] / "examples" / "critical_scale.py"
 
 
-def test_it_prints_a_sentence_and_keeps_the_result(monkeypatch, tmp_path, capsys):
+def test_script_prints_verdict_and_saves_result(monkeypatch, tmp_path, capsys):
     rf.GroundMotion.sine_pulse("2 m/s^2", "0.5 Hz").to_dataset().to_netcdf(tmp_path / "record.nc")
 
     def run(*arguments):

@@ -360,7 +360,7 @@ def falling(scene, **options):
 
 
 class TestOverturning:
-    def test_it_ends_the_run_and_is_told_everywhere(self, scene):
+    def test_overturning_ends_run_and_is_reported(self, scene):
         response = falling(scene, free_vibration="5 s")
         time = response.overturning_time.item()
         assert response.overturned.item() is True
@@ -381,7 +381,7 @@ class TestOverturning:
         assert "right" in response.attrs["verdict"]
         assert f"{time:.3f} s" in response.attrs["verdict"]
 
-    def test_it_may_go_on_until_the_block_lies_flat(self, scene):
+    def test_run_can_continue_until_block_lies_flat(self, scene):
         short = falling(scene, free_vibration="5 s")
         long = falling(scene, free_vibration="60 s", overturning="continue")
         assert bool((long.status.cf == "toppled").item())
@@ -398,7 +398,7 @@ class TestOverturning:
         np.testing.assert_array_equal(long.rotation.values[:count], short.rotation.values[:count])
         assert "flat" in long.attrs["verdict"]
 
-    def test_the_other_side_is_left(self, scene):
+    def test_overturning_to_the_left(self, scene):
         motion = rf.GroundMotion.sine_pulse("9 m/s^2", "0.5 Hz")
         response = SCENES[scene]().simulate(motion)
         assert bool((response.overturning_direction.cf == "left").item())
@@ -419,7 +419,7 @@ class TestWhatIsAskedFor:
             response = SCENES[scene]().simulate(pulse(), duration="0.4 s", outputs=outputs)
             assert set(ENERGIES) & set(response.variables) == {name}
 
-    def test_no_histories_at_all(self, scene):
+    def test_outputs_none_leaves_out_histories(self, scene):
         response = SCENES[scene]().simulate(pulse(), outputs=None)
         assert set(response.dims) == {"event"}
         assert set(response.variables) >= SCALARS | EVENTS
@@ -434,7 +434,7 @@ class TestWhatIsAskedFor:
         own = SCENES[scene]().simulate(record(), duration="3 s")
         np.testing.assert_array_equal(own.time.values, np.arange(301) * 0.01)
 
-    def test_a_still_ground(self, scene):
+    def test_run_without_motion(self, scene):
         response = SCENES[scene]().simulate(
             duration="1 s", initial=rf.InitialState(rotation="0.1 rad")
         )
@@ -444,7 +444,7 @@ class TestWhatIsAskedFor:
         assert "motion_sha256" not in response.attrs
         assert response.attrs["motion"] == "none"
 
-    def test_nothing_happens_to_a_block_left_alone(self, scene):
+    def test_undisturbed_block_stays_at_rest(self, scene):
         response = SCENES[scene]().simulate(duration="1 s", outputs="energy")
         assert response.sizes["event"] == 0
         assert (response.rotation.values == 0.0).all()
@@ -484,7 +484,7 @@ def test_scalars_of_a_study_concatenate():
     assert (np.isnan(study.overturning_time) == ~study.overturned).all()
 
 
-def test_a_tolerance_is_an_accuracy():
+def test_number_as_accuracy_is_relative_tolerance():
     system = SCENES["two-spring, contact-state, finite"]()
     one = system.simulate(pulse(), accuracy=1e-6)
     other = system.simulate(pulse(), accuracy=rf.Accuracy(rtol=1e-6))
@@ -499,7 +499,7 @@ def test_a_tolerance_is_an_accuracy():
         rf.WinklerSoil(stiffness="20 MPa", damping_ratio=0.1),
     ],
 )
-def test_vertical_displacements_are_relative_to_the_settlement_at_rest(base):
+def test_relative_vertical_displacement_is_in_units_of_settlement(base):
     """g over the square of the vertical frequency."""
     system = rf.System(rf.Block(width="2 m", height="8 m", mass="50 t"), base)
     settlement = 9.80665 / float(system.frequencies().angular_frequency[-1]) ** 2
@@ -510,7 +510,7 @@ def test_vertical_displacements_are_relative_to_the_settlement_at_rest(base):
     )
 
 
-def test_a_length_that_is_whole_steps_but_for_rounding_has_its_last_sample():
+def test_last_sample_is_present_despite_rounding_of_duration():
     assert 0.3 / 0.1 < 3.0
     system = SCENES["two-spring, contact-state, finite"]()
     assert system.simulate(duration="0.3 s", output_step="0.1 s").time.size == 4
@@ -569,7 +569,7 @@ STANDS = "Did not overturn: peak rotation 0.01 rad, 5 % of the overturning angle
         ),
     ],
 )
-def test_a_verdict_in_words(found, pads_on_cap, words):
+def test_verdict_sentence(found, pads_on_cap, words):
     summary = Summary(
         status=Status.COMPLETED,
         end_time=2.0,
@@ -605,7 +605,7 @@ def test_a_verdict_in_words(found, pads_on_cap, words):
         assert "peak rotation 0.005 rad, 20 % of the overturning angle to the right;" in told
 
 
-def test_an_unfinished_run_says_so():
+def test_unfinished_run_warns():
     system = SCENES["two-spring, contact-state, finite"]()
     with pytest.warns(SolverWarning, match="Not finished: stopped at") as caught:
         response = system.simulate(pulse(), accuracy=rf.Accuracy(rtol=1e-7, max_steps=50))

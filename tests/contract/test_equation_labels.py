@@ -46,7 +46,7 @@ THEORY = [
 ]
 
 
-def test_there_is_something_to_check():
+def test_equation_labels_are_found():
     assert len(CITED_BY_CODE) >= 12
     assert len(THEORY) >= 12
 
@@ -57,7 +57,7 @@ def test_an_equation_that_is_cited_is_defined_once():
             assert COUNT[label] == 1, f"{place} cites {label}, defined {COUNT[label]} times"
 
 
-def test_an_equation_of_the_theory_is_cited_elsewhere():
+def test_theory_equations_are_cited_elsewhere():
     for label, page in THEORY:
         elsewhere = any(
             label in CITATION.findall(text) for other, text in PAGES.items() if other != page

@@ -163,7 +163,7 @@ def spans(drawn, unit):
     return np.array(found)
 
 
-def test_all_figures_are_here_and_take_the_three():
+def test_all_figures_take_units_ax_and_title():
     functions = {name for name in rf.plot.__all__ if name.islower()}
     assert functions == set(DRAWN)
     for name in functions:
@@ -178,7 +178,7 @@ def test_all_figures_are_here_and_take_the_three():
 
 @pytest.mark.wide
 @pytest.mark.parametrize("name", sorted(set(DRAWN) - {"player"}))
-def test_units_are_those_of_the_reader(name, given):
+def test_figures_use_requested_units(name, given):
     draw, kinds = getattr(rf.plot, name), DRAWN[name][1]
     for kind, (plain, other, size) in kinds.items():
         words = {"m/s^2": "m s$^{-2}$", "m/s": "m s$^{-1}$", "cm/s": "cm s$^{-1}$"}
@@ -201,7 +201,7 @@ def test_units_are_those_of_the_reader(name, given):
 
 @pytest.mark.wide
 @pytest.mark.parametrize("name", sorted(set(DRAWN) - {"player"}))
-def test_figures_are_drawn_where_they_are_told_to(name, given):
+def test_figures_are_drawn_on_given_axes(name, given):
     draw, what = getattr(rf.plot, name), given(name)
     assert name not in KINDS or figure_function_name(what) == name
     usual = panels_of(draw(what))

@@ -28,7 +28,7 @@ def test_every_example_is_named():
     assert named == {path.name for path in (DOCS.parent / "examples").glob("*.py")}
 
 
-def test_the_example_fits_a_phone():
+def test_example_fits_a_phone_screen():
     """At 400 pixels a line has room for 43 characters."""
     (snippet,) = re.findall(r"```python\n(.*?)```", read("index.md"), re.DOTALL)
     assert max(map(len, snippet.splitlines())) <= 43
@@ -38,7 +38,7 @@ def data(name):
     return json.loads((DOCS / "data" / f"{name}.json").read_text(encoding="utf-8"))
 
 
-def test_its_numbers_are_those_of_the_pages_and_the_data():
+def test_numbers_match_other_pages_and_data():
     ((_, pads, *_),) = rows = table(
         "validation_speed.md", "| rigid ground | pads | soil | cascade | coupled |"
     )
@@ -57,7 +57,7 @@ def test_its_numbers_are_those_of_the_pages_and_the_data():
     assert share == round(held_out, 2)
 
 
-def test_the_readme_says_the_same():
+def test_readme_states_same_numbers():
     readme = (DOCS.parent / "README.md").read_text(encoding="utf-8")
     words = " ".join(readme.split())
     low, high = said("index.md", "# to # times in five scenes")

@@ -39,7 +39,7 @@ def ours():
             yield label, found
 
 
-def test_hints_are_there_at_run_time():
+def test_type_hints_resolve_at_run_time():
     found = dict(ours())
     assert len(found) > 600
     unread = {}
@@ -51,6 +51,6 @@ def test_hints_are_there_at_run_time():
     assert unread == {}
 
 
-def test_hints_are_types_and_not_texts():
+def test_type_hints_are_types_not_strings():
     hints = get_type_hints(rf.System.simulate)
     assert hints["motion"] == rf.GroundMotion | None

@@ -31,20 +31,20 @@ def rows():
     return {row[0].strip("`"): row[1:] for row in table(PAGE, HEAD)}
 
 
-def test_every_room_is_there_and_drawn():
+def test_every_subpackage_is_listed_and_drawn():
     assert set(rows()) == ROOMS, f"give each room a row of the table in docs/{PAGE}, and no other"
     figure = read(PAGE).split("```text\n", 1)[1].split("```", 1)[0]
     assert set(figure.split()) >= ROOMS, f"draw each room in the figure of docs/{PAGE}"
 
 
 @pytest.mark.parametrize("room", sorted(ROOMS))
-def test_rooms_that_it_uses_are_those_that_it_imports(room):
+def test_documented_dependencies_match_imports(room):
     written = {one.strip() for one in rows()[room][2].split(",") if one.strip()}
     assert written == used_by(room), f"write these rooms in the row of {room} in docs/{PAGE}"
 
 
 @pytest.mark.parametrize("room", sorted(ROOMS))
-def test_what_others_take_is_there(room):
+def test_documented_exports_exist(room):
     modules = [importlib.import_module(f"rockframe.{room}"), *_files(room)]
     for name in rows()[room][1].replace("`", "").split(","):
         assert any(hasattr(module, name.strip()) for module in modules), (

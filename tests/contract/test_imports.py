@@ -61,7 +61,7 @@ assert "two-spring" in text
 """
 
 
-def test_nothing_loads_more_than_it_needs(needed, tmp_path):
+def test_only_needed_libraries_are_imported(needed, tmp_path):
     """One after the other: what is not loaded after the last was loaded by none before it."""
     file = tmp_path / "record.txt"
     file.write_text("\n".join(f"{0.01 * i:.2f} {0.1 * (i % 3)}" for i in range(50)))
@@ -106,7 +106,7 @@ def test_help_and_completion_load_no_library(words):
         pytest.param("rockframe", [], "from rockframe import Block", marks=pytest.mark.long),
     ],
 )
-def test_every_script_has_the_accessor_however_it_is_called(name, words, first, tmp_path):
+def test_accessor_is_registered_for_any_script_name(name, words, first, tmp_path):
     script = tmp_path / name
     script.write_text(f"{first}\nimport xarray\nassert hasattr(xarray.Dataset, 'rockframe')")
     done = subprocess.run(
@@ -115,7 +115,7 @@ def test_every_script_has_the_accessor_however_it_is_called(name, words, first, 
     assert done.returncode == 0, done.stderr
 
 
-def test_simulating_loads_a_compiler_only_to_compile_and_no_plot():
+def test_simulation_imports_numba_only_to_compile():
     code = """
 import rockframe as rf
 block = rf.Block(width="2 m", height="8 m", mass="50 t")
@@ -127,7 +127,7 @@ response.to_netcdf
     assert not NEEDED_BY_FEW & loaded(plain + code)[0]
 
 
-def test_all_names_are_there():
+def test_all_public_names_exist():
     expected = {
         "Accuracy",
         "Block",
@@ -147,7 +147,7 @@ def test_all_names_are_there():
         rf.Sytem  # noqa: B018
 
 
-def test_only_what_is_meant_for_users_is_shown():
+def test_dir_lists_only_public_names():
     drawn = {"motion", "response", "selection", "spectra", "tradeoff", "fragility"}
     assert drawn <= set(dir(rf.plot))
     assert not [name for name in dir(rf.plot) if name.startswith("_")]
@@ -160,7 +160,7 @@ def test_only_what_is_meant_for_users_is_shown():
     assert not {"assembly", "scene", "setting"} & shown
 
 
-def test_names_that_have_moved_are_given_with_a_warning():
+def test_moved_names_warn_as_deprecated():
     with pytest.warns(DeprecationWarning, match=r"AssemblyError is now rockframe\.errors"):
         assert rf.AssemblyError is rf.errors.AssemblyError
     with pytest.warns(DeprecationWarning, match=r"Case is now rockframe\.studies\.Sweep"):
@@ -184,7 +184,7 @@ def test_names_that_have_moved_are_given_with_a_warning():
 COUNTS = {"intensity": ([1.0, 2.0, 3.0], "m/s^2"), "exceeded": [0, 2, 5], "trials": 5}
 
 
-def test_errors_form_one_family():
+def test_errors_share_one_base_class():
     family = {name: getattr(rf.errors, name) for name in dir(rf.errors)}
     for name, one in family.items():
         base = RockframeWarning if name.endswith("Warning") else RockframeError
@@ -211,7 +211,7 @@ assert len(rf.response_spectrum(pulse, ([0.5], "s")).period) == 1
 """
 
 
-def test_all_runs_in_the_caller_where_there_are_neither_threads_nor_compiled_libraries():
+def test_runs_without_threads_and_compiled_libraries():
     """As in a browser, by a stand-in: these modules are missing, and no thread can be started."""
     done = subprocess.run(
         [sys.executable, "-c", WITHOUT], capture_output=True, text=True, timeout=240

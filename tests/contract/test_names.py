@@ -20,7 +20,7 @@ SHARED_FUNCTIONS = {
 }  # fmt: skip
 
 
-def test_names_of_classes_and_functions_stand_once():
+def test_class_and_function_names_are_unique():
     places = {ast.ClassDef: defaultdict(list), ast.FunctionDef: defaultdict(list)}
     for path in sorted(PACKAGE.rglob("*.py")):
         for node in ast.parse(path.read_text(encoding="utf-8")).body:

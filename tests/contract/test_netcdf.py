@@ -86,7 +86,7 @@ CHECKS = (
 
 
 @pytest.mark.wide
-def test_every_file(subtests, scene, motion_name, response, tmp_path):
+def test_every_response_survives_netcdf_round_trip(subtests, scene, motion_name, response, tmp_path):
     before = response.copy(deep=True)
     known = {
         "scene": scene, "motion_name": motion_name, "response": response, "before": before,
@@ -105,7 +105,7 @@ ANSWERS = {
 
 
 @pytest.mark.parametrize("kind", ANSWERS)
-def test_what_needs_no_run_survives_the_file_and_rebuilds_its_system(scene, kind, tmp_path):
+def test_static_results_survive_netcdf_and_rebuild_their_system(scene, kind, tmp_path):
     system = SCENES[scene]()
     if kind == "modes" and scene.startswith("rigid"):
         return
@@ -127,7 +127,7 @@ def test_what_needs_no_run_survives_the_file_and_rebuilds_its_system(scene, kind
 
 
 @pytest.mark.parametrize("stiffness", [30, 100, 200])
-def test_a_cascade_keeps_the_record_whatever_the_steps_of_its_stages(stiffness, tmp_path):
+def test_cascade_stores_record_for_any_stage_steps(stiffness, tmp_path):
     motion = rf.GroundMotion.from_arrays(
         (np.random.default_rng(4).normal(size=200), "m/s^2"), "0.02 s", name="noise"
     )
@@ -143,7 +143,7 @@ def test_a_cascade_keeps_the_record_whatever_the_steps_of_its_stages(stiffness, 
 
 @pytest.mark.parametrize("coupling", ["coupled", "cascade"])
 @pytest.mark.parametrize("rule", RULES)
-def test_odd_numbers_of_a_stack_come_back(rule, coupling, tmp_path):
+def test_stack_with_odd_numbers_survives_netcdf(rule, coupling, tmp_path):
     system = rf.System(
         rf.Block(width="7.77 ft", height="29.1 ft", mass="33.3 t", shape_factor=2.87),
         rf.TwoSpringSupport(stiffness="9.87 kN/mm", damping="71.3 kN*s/m", restitution=0.71),
@@ -168,7 +168,7 @@ def test_odd_numbers_of_a_stack_come_back(rule, coupling, tmp_path):
 @pytest.mark.parametrize("rule", RULES)
 @pytest.mark.parametrize("gravity", ["9.81 m/s^2", "0.1654 g_0"])
 @pytest.mark.parametrize("motion", [pulse, record])
-def test_options_and_odd_numbers_come_back(rule, gravity, motion, tmp_path):
+def test_options_and_odd_numbers_survive_netcdf(rule, gravity, motion, tmp_path):
     system = rf.System(
         rf.Block(width="7.77 ft", height="29.1 ft", mass="33.3 t", shape_factor=2.87),
         rf.TwoSpringSupport(stiffness="9.87 kN/mm", damping="71.3 kN*s/m", restitution=0.71),
@@ -186,7 +186,7 @@ def test_options_and_odd_numbers_come_back(rule, gravity, motion, tmp_path):
     assert rerun.drop_attrs(deep=False).identical(response.drop_attrs(deep=False))
 
 
-def test_the_run_itself_is_on_record(tmp_path):
+def test_run_options_are_stored_in_file(tmp_path):
     initial = rf.InitialState(rotation="-1 deg")
     response = SCENES["two-spring, centre, finite"]().simulate(
         record(),
@@ -225,7 +225,7 @@ def test_the_run_itself_is_on_record(tmp_path):
         {"output_step": "33 ms"},
     ],
 )
-def test_a_record_that_the_result_does_not_hold_is_left_out(options, tmp_path):
+def test_incomplete_record_in_result_warns_and_is_left_out(options, tmp_path):
     response = SCENES["rigid ground, finite"]().simulate(record(), **options)
     with pytest.warns(RecordWarning, match="the system comes without a motion"):
         system = rf.System.from_dataset(through_file(response, tmp_path))
@@ -233,21 +233,21 @@ def test_a_record_that_the_result_does_not_hold_is_left_out(options, tmp_path):
     assert system.to_dict() == SCENES["rigid ground, finite"]().to_dict()
 
 
-def test_a_record_is_kept_by_a_run_that_ends_before_it(tmp_path):
+def test_run_shorter_than_record_stores_whole_record(tmp_path):
     response = SCENES["rigid ground, finite"]().simulate(record(), duration="0.5 s")
     system = rf.System.from_dataset(through_file(response, tmp_path))
     assert system.motion is not None
     assert system.motion.sha256 == record().sha256
 
 
-def test_a_pulse_is_kept_even_without_histories(tmp_path):
+def test_pulse_is_stored_without_histories(tmp_path):
     response = SCENES["rigid ground, finite"]().simulate(pulse(), outputs=None)
     system = rf.System.from_dataset(through_file(response, tmp_path))
     assert system.motion is not None
     assert system.motion.sha256 == pulse().sha256
 
 
-def test_a_motion_among_the_parts_is_used_and_kept(tmp_path):
+def test_motion_among_parts_is_used_and_stored(tmp_path):
     motion = pulse()
     system = rf.System(motion, pads(), block())
     apart = rf.System(block(), pads())
@@ -324,7 +324,7 @@ def test_a_damaged_description_of_the_motion_is_refused(changed):
 
 
 @pytest.mark.parametrize("name", ["motion_time_step", "motion_samples", "motion_sha256", "motion"])
-def test_a_missing_part_of_the_description_is_no_crash(name):
+def test_missing_motion_attribute_does_not_crash(name):
     response = damaged()
     del response.attrs[name]
     try:
@@ -334,7 +334,7 @@ def test_a_missing_part_of_the_description_is_no_crash(name):
     assert system.to_dict() == SCENES["rigid ground, finite"]().to_dict()
 
 
-def test_changed_samples_are_not_taken_for_the_record():
+def test_changed_samples_are_not_accepted_as_record():
     response = damaged()
     response.ground_acceleration.values[17] *= 1.0 + 1e-12
     with pytest.warns(RecordWarning, match="is not what the run had; the system comes without"):
@@ -351,7 +351,7 @@ def test_changed_samples_are_not_taken_for_the_record():
         (lambda response: response.drop_dims("time"), "no history of the ground"),
     ],
 )
-def test_a_record_that_is_lost_is_missed(change, reason):
+def test_missing_samples_warn(change, reason):
     with pytest.warns(RecordWarning, match=reason) as caught:
         assert rf.System.from_dataset(change(damaged())).motion is None
     assert caught[0].filename == __file__

@@ -11,7 +11,7 @@ SCRIPT = Path(__file__).resolve().parents[2] / "examples" / "office_contents.py"
 
 
 @pytest.mark.long
-def test_it_puts_medians_beside_those_of_fema(monkeypatch, tmp_path, capsys):
+def test_script_compares_medians_with_fema(monkeypatch, tmp_path, capsys):
     monkeypatch.setattr(sys, "argv", [str(SCRIPT), "--motions", "3", "--folder", str(tmp_path)])
     with pytest.raises(SystemExit) as left:
         runpy.run_path(str(SCRIPT), run_name="__main__")

@@ -80,7 +80,7 @@ def noise(sign=1.0):
 
 
 class TestWords:
-    def test_the_model_and_its_numbers_are_told(self, system):
+    def test_description_lists_model_and_its_numbers(self, system):
         text = system.describe()
         assert text.startswith("Model: yielding pads\n")
         assert repr(system.parts.pads) in text
@@ -89,7 +89,7 @@ class TestWords:
         assert "the set z grows by (1 - r) u'" in text
 
     @every_scene
-    def test_they_are_told_in_a_stack(self, pads, scene):
+    def test_description_of_stack_lists_its_numbers(self, pads, scene):
         assert "strength of one pad" in in_scene(pads, scene).describe()
 
     def test_the_file_is_short(self):
@@ -112,14 +112,14 @@ class TestComponent:
         assert stronger.si.hardening == pads.si.hardening
         assert pads.si.strength == GIVEN["strength"]
 
-    def test_it_comes_back_from_a_description(self, pads):
+    def test_base_survives_dict_round_trip(self, pads):
         description = json.loads(json.dumps(pads.to_dict()))
         assert description == {"type": "YieldingPads", **GIVEN}
         assert component_from_dict(description) == pads
         assert type(pads).from_dict(description) == pads
 
     @every_scene
-    def test_a_system_comes_back_from_a_description(self, pads, scene):
+    def test_system_survives_dict_round_trip(self, pads, scene):
         system = in_scene(pads, scene)
         assert rf.System.from_dict(json.loads(json.dumps(system.to_dict()))) == system
 
@@ -137,7 +137,7 @@ class TestComponent:
 
 
 class TestDataset:
-    def test_its_own_histories_are_labelled(self, response):
+    def test_own_histories_are_labelled(self, response):
         for side in ("left", "right"):
             history = response[f"{side}_set"]
             assert history.dims == ("time",)
@@ -163,7 +163,7 @@ class TestDataset:
         for name in response.variables:
             np.testing.assert_array_equal(repeated[name], response[name], err_msg=name)
 
-    def test_a_run_goes_on_with_its_sets(self, system, response):
+    def test_continued_run_starts_from_plastic_sets(self, system, response):
         first = system.simulate(PULSE, duration="1.5 s")
         rest = system.simulate(initial=first, duration="1 s")
         for name in SETS:
@@ -172,7 +172,7 @@ class TestDataset:
 
 
 class TestLadder:
-    def test_two_pads_come_before_yielding_pads(self, system):
+    def test_model_ladder_lists_two_pads_before_yielding_pads(self, system):
         assert list(rf.model_ladder(system)) == [
             "rigid ground, small rotations",
             "rigid ground",
@@ -182,7 +182,7 @@ class TestLadder:
             "YieldingPads",
         ]
 
-    def test_in_a_stack_too(self, pads):
+    def test_model_ladder_of_stack_lists_elastic_pads_first(self, pads):
         names = list(rf.model_ladder(in_scene(pads, "coupled")))
         for kind in ("by cascade", "coupled"):
             elastic, own = (
@@ -193,7 +193,7 @@ class TestLadder:
         assert names[-1] == "YieldingPads, cap and soil coupled"
 
     @pytest.mark.long
-    def test_tradeoff_tells_what_yielding_changes(self, system):
+    def test_tradeoff_reports_effect_of_yielding(self, system):
         study = rf.tradeoff(
             system, PULSE, models=["two pads", "YieldingPads"], accuracies="standard", repeats=1,
             duration="2 s",
@@ -224,7 +224,7 @@ class TestMechanics:
         assert float(response.energy_residual) <= 1e-8
 
     @pytest.mark.parametrize("rotation", [-0.24, -0.1, 0.003, 0.02, 0.05, 0.2])
-    def test_statics_of_a_stack_follow_pads_that_yield(self, pads, rotation):
+    def test_statics_of_stack_include_yielding(self, pads, rotation):
         """Where bilinear pads have stored least of what it takes to press them from rest."""
         system = rf.System(BLOCK, pads, CAP, SOIL, coupling="coupled")
         g, weight = 9.80665, 9.80665e4
@@ -312,7 +312,7 @@ class TestMechanics:
         for name in SETS:
             assert (ours[name] == 0.0).all()
 
-    def test_energy_balances_with_landings_on_a_ground_of_ones_own(self, pads):
+    def test_energy_balances_with_landings_on_custom_ground(self, pads):
         """Stage 1 lands on pads under the cap; its energies are those of a larger mass."""
         with as_before(), plainly():
             rf.register(Stilts)
@@ -332,7 +332,7 @@ class TestMechanics:
             with pytest.raises(AssemblyError, match="starts in equilibrium, before any yields"):
                 system.simulate(initial=rf.InitialState(**start), duration="1 s")
 
-    def test_yielding_follows_its_line(self, system):
+    def test_yielding_force_follows_hardening_line(self, system):
         """While a pad yields, its spring's force is strength + r k z/(1 - r)."""
         quiet = system.parts.pads.replace(damping_ratio=0.0)
         response = rf.System(BLOCK, quiet).simulate(
@@ -352,7 +352,7 @@ class TestMechanics:
 
 @pytest.mark.skipif(not COMPILED, reason="this run does without compilation")
 @pytest.mark.parametrize("scene", ["alone", pytest.param("coupled", marks=pytest.mark.long)])
-def test_compiled_and_plain_agree(pads, scene):
+def test_compiled_and_uncompiled_runs_agree(pads, scene):
     """Alone whole runs do; coupled what is observed along a run, of all equations of motion."""
     system = in_scene(pads, scene)
     with nullcontext() if scene == "alone" else plainly(advance):
@@ -364,7 +364,7 @@ def test_compiled_and_plain_agree(pads, scene):
         np.testing.assert_allclose(compiled[name], plain[name], rtol=1e-12, atol=1e-12)
 
 
-def test_code_is_kept_for_each_name_of_a_module(tmp_path, monkeypatch):
+def test_code_cache_is_separate_for_each_module_name(tmp_path, monkeypatch):
     """As for a script that is run, and then imported; numba looks for the module by its name."""
     monkeypatch.setenv("ROCKFRAME_CACHE_DIR", str(tmp_path / "code"))
     monkeypatch.syspath_prepend(tmp_path)
@@ -514,7 +514,7 @@ class TestRegistration:
         with as_before():
             yield
 
-    def test_a_registered_base_stands_in_scenes(self):
+    def test_registered_base_works_in_scenes(self):
         rf.register(Copied, columns=[column()])
         assert SCHEMA["wear"] == column()
         own = rf.System(BLOCK, Copied(frequency_ratio=20))
@@ -523,12 +523,12 @@ class TestRegistration:
         np.testing.assert_array_equal(one.rotation, other.rotation)
         rf.register(Copied, columns=[column()])  # once more, as when a notebook's cell is run again
 
-    def test_one_that_is_not_registered_is_no_part(self):
+    def test_unregistered_base_is_refused(self):
         with pytest.raises(AssemblyError, match=r"Copied\(frequency_ratio=20\.0\) is not a par"):
             rf.System(BLOCK, Copied(frequency_ratio=20))
 
     @pytest.mark.parametrize("kind", [rf.TwoSpringSupport, rf.Block, int, 3, "pads", None])
-    def test_what_is_no_base_is_refused(self, kind):
+    def test_registering_other_types_is_refused(self, kind):
         with pytest.raises(ComponentError, match=r"OwnBase or OwnScene, .* got"):
             rf.register(kind)
 
@@ -563,7 +563,7 @@ class TestRegistration:
         with pytest.raises(ComponentError, match=words):
             rf.register(Copied, columns=[wrong])
 
-    def test_all_faults_are_told_and_nothing_is_registered(self):
+    def test_all_faults_are_reported_and_nothing_is_registered(self):
         class Nowhere(ext.OwnBase):
             """Neither a slot nor a support."""
 
@@ -580,7 +580,7 @@ class TestRegistration:
         assert rows == SCHEMA
         assert kinds == parts_of._KINDS
 
-    def test_a_support_that_is_not_registered_is_refused(self):
+    def test_unregistered_support_is_refused(self):
         with pytest.raises(AssemblyError, match="Doubled carries a body in its own way, but is"):
             rf.System(BLOCK, Doubled(frequency_ratio=20, damping_ratio=0.1))
 
@@ -598,13 +598,13 @@ class TestRegistration:
             rf.System(BLOCK, yielding.YieldingPads(**GIVEN)).setting.settlement * 2.25
         )
 
-    def test_a_history_that_nobody_registered_is_told(self, pads):
+    def test_unregistered_history_raises(self, pads):
         for name in SETS:
             del SCHEMA[name]
         with pytest.raises(SchemaError, match="'left_set' is not in the schema of results"):
             rf.System(BLOCK, pads).simulate(PULSE, duration="0.1 s")
 
-    def test_bases_of_a_stack_that_show_the_same_are_refused(self, pads):
+    def test_bases_with_same_outputs_in_one_stack_are_refused(self, pads):
         class Twins(Stilts):
             """Pads under the cap that show what those under the block show."""
 
@@ -616,7 +616,7 @@ class TestRegistration:
         with pytest.raises(AssemblyError, match="both show left_reaction and right_reaction"):
             rf.System(*parts)
 
-    def test_soil_that_does_not_show_its_reaction(self, pads):
+    def test_soil_without_reaction_output_runs_without_friction_demand(self, pads):
         names = "near_reaction", "far_reaction"
 
         class UnseenSupport(StiltSupport):
@@ -646,7 +646,7 @@ class TestRegistration:
             system.simulate(PULSE, duration="0.2 s", outputs="soil_friction_demand")
 
     @pytest.mark.parametrize("rotation", [-0.1, 0.001, 0.05])
-    def test_statics_have_what_a_base_adds(self, rotation):
+    def test_statics_include_moment_added_by_base(self, rotation):
         rf.register(TiedPads)
         pads, tied = (
             rf.System(BLOCK, base).moment_rotation(f"{rotation} rad").restoring_moment.item()
@@ -658,7 +658,7 @@ class TestRegistration:
         lift = 0.1 * 1e4 * 9.80665 * 2 * 0.5 * math.sin(rotation)
         assert tied - pads == pytest.approx(lift, rel=1e-9)
 
-    def test_a_stiffer_tie_holds_more(self):
+    def test_stiffer_tie_raises_moment_frequency_and_energy(self):
         rf.register(TiedPads)
         for parts in ((), (CAP, SOIL)):
             systems = [rf.System(BLOCK, TiedPads(tie=tie), *parts) for tie in (0, 0.1, 1)]
@@ -669,7 +669,7 @@ class TestRegistration:
             ):
                 assert answer == sorted(set(answer))
 
-    def test_who_is_not_registered_is_told(self):
+    def test_registration_errors_name_class_and_remedy(self):
         with pytest.raises(AssemblyError, match=r"call rockframe.register\(Copied\) first"):
             rf.System(BLOCK, Copied(frequency_ratio=20))
         with pytest.raises(AssemblyError, match=r"derive it from .*OwnBase, and"):

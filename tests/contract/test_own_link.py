@@ -31,7 +31,7 @@ def example():
     return module
 
 
-def test_a_rope_runs_and_balances_its_energies(example):
+def test_rope_runs_and_energy_balances(example):
     system = rf.System(BLOCK, PADS, example.Rope(**POINTS, reach="0.1 m"))
     with plainly():  # beside links of other laws it is compiled
         run = system.simulate(PULSE, free_vibration="1 s")
@@ -41,7 +41,7 @@ def test_a_rope_runs_and_balances_its_energies(example):
 
 
 @pytest.mark.long
-def test_one_that_hardly_hardens_is_a_tie(example):
+def test_rope_with_negligible_hardening_matches_restrainer(example):
     rope = example.Rope(**POINTS, reach="1e6 m")
     with plainly():
         runs = [
@@ -56,12 +56,12 @@ def test_one_that_hardly_hardens_is_a_tie(example):
     np.testing.assert_allclose(held[0], held[1], rtol=1e-9)
 
 
-def test_what_is_no_link_is_refused():
+def test_registering_other_types_is_refused():
     with pytest.raises(ComponentError, match="OwnBase or OwnScene"):
         rf.register(int)
 
 
-def test_the_page_names_files_that_are_there():
+def test_page_names_existing_files():
     text = PAGE.read_text()
     root = FILE.parents[1]
     for name in (
@@ -82,7 +82,7 @@ def test_the_page_names_files_that_are_there():
     [(), pytest.param((advance,), marks=pytest.mark.long)],
     ids=["in plain Python", "compiled"],
 )
-def test_links_of_several_laws_are_in_one_scene(example, entries):
+def test_links_of_several_laws_work_in_one_scene(example, entries):
     rope, tie = example.Rope(**POINTS, reach="1 m", name="rope"), rf.Restrainer(**POINTS)
     load = rf.Load(at=("0 m", "3 m"), vertical="2 kN")
     with plainly(*entries):
@@ -102,7 +102,7 @@ def test_links_of_several_laws_are_in_one_scene(example, entries):
     assert abs(beside.rotation - alone.rotation).max() < 1e-8
 
 
-def test_what_is_wrong_with_a_law_is_told_when_it_is_made():
+def test_invalid_link_law_raises_with_all_faults():
     class Nameless(NamedTuple):
         guard: float
 

@@ -47,7 +47,7 @@ def response(system):
 
 
 class TestSystem:
-    def test_it_is_described(self, system, ground):
+    def test_description_lists_model_and_friction(self, system, ground):
         text = system.describe()
         assert text.startswith("Model: slide-rock\n")
         assert repr(ground) in text
@@ -55,22 +55,22 @@ class TestSystem:
         assert "jamming" in text
         assert "<svg" in system._repr_html_()
 
-    def test_the_file_is_short_and_uses_what_is_public(self):
+    def test_example_file_is_short_and_imports_only_public_names(self):
         text = SCENE_FILE.read_text(encoding="utf-8")
         assert sum(bool(line.strip()) for line in text.splitlines()) < 350
         assert "from rockframe import extension as ext" in text
         assert "import rockframe." not in text
         assert "from rockframe." not in text
 
-    def test_parts_in_any_order_make_it(self, system, ground):
+    def test_order_of_parts_does_not_matter(self, system, ground):
         assert rf.System(ground, BLOCK, PULSE).parts.replace(motion=None) == system.parts
         assert hash(rf.System(ground, BLOCK)) == hash(system)
         assert rf.System(BLOCK, ground.replace(friction=0.4)) != system
 
-    def test_it_comes_back_from_a_description(self, system):
+    def test_system_survives_dict_round_trip(self, system):
         assert rf.System.from_dict(json.loads(json.dumps(system.to_dict()))) == system
 
-    def test_it_comes_from_a_file(self, system, tmp_path):
+    def test_scene_can_be_read_from_toml_file(self, system, tmp_path):
         (tmp_path / "own_scene.py").write_text(SCENE_FILE.read_text(encoding="utf-8"))
         file = tmp_path / "scene.toml"
         file.write_text(
@@ -90,19 +90,19 @@ class TestSystem:
             ),
         ],
     )
-    def test_other_combinations_are_refused_with_all_scenes(self, ground, parts, words):
+    def test_other_combinations_are_refused_with_list_of_scenes(self, ground, parts, words):
         with pytest.raises(AssemblyError, match=words) as caught:
             rf.System(*parts, ground)
         assert str(caught.value).endswith("\n  Block + SlidingGround (SlidingScene)")
         assert "\n  Block + WinklerSoil" in str(caught.value)
 
-    def test_what_it_does_not_fit_is_its_own_to_say(self, own, ground):
+    def test_scene_refuses_unsuitable_block_and_friction(self, own, ground):
         with pytest.raises(AssemblyError, match="needs a symmetric block on level ground"):
             rf.System(BLOCK, ground, inclination="1 deg")
         with pytest.raises(AssemblyError, match="the kinetic friction is above that at rest"):
             rf.System(BLOCK, own.SlidingGround(friction=0.2, kinetic_friction=0.3))
 
-    def test_what_it_does_not_tell_is_refused(self, system):
+    def test_unsupported_analyses_are_refused(self, system):
         with pytest.raises(AssemblyError, match="slide-rock tells no small motion"):
             system.frequencies()
         with pytest.raises(AssemblyError, match="slide-rock tells no quasi-static states"):
@@ -115,7 +115,7 @@ class TestSystem:
 
 
 class TestRun:
-    def test_its_columns_of_all_dimensions_are_labelled(self, response):
+    def test_own_variables_of_all_dimensions_are_labelled(self, response):
         assert response.slip.dims == ("time",)
         assert response.event_slip.dims == response.event_time.dims == ("event",)
         assert response.residual_slip.dims == ()
@@ -142,17 +142,17 @@ class TestRun:
         for name in response.variables:
             np.testing.assert_array_equal(repeated[name], response[name], err_msg=name)
 
-    def test_a_run_goes_on(self, system, response):
+    def test_run_can_be_continued(self, system, response):
         first = system.simulate(PULSE)
         rest = system.simulate(initial=first, duration="1 s")
         assert float(rest.slip[0]) == float(first.slip[-1])
         assert float(rest.slip[-1]) == pytest.approx(float(response.slip[-1]), rel=1e-9)
 
-    def test_without_histories_there_are_no_answers(self, system):
+    def test_outputs_none_leaves_out_own_variables(self, system):
         bare = system.simulate(PULSE, outputs=None)
         assert not {"slip", "event_slip", "residual_slip"} & set(bare.variables)
 
-    def test_a_certificate_nudges_its_parameters(self, system):
+    def test_certificate_perturbs_own_parameters(self, system):
         nudged = {
             words for words, _ in rf.simulation.certify.perturbations.parameters(system.assembly)
         }
@@ -170,7 +170,7 @@ class TestRun:
 
 
 class TestStudies:
-    def test_axes_name_its_parameters(self, system):
+    def test_sweep_axes_accept_own_parameters(self, system):
         runs = rf.sweep(
             system, PULSE, friction=[0.2, 0.26], width=["1 m", "1.1 m"], **RUN,
             outputs=["slip", "edge_height"], progress=False,
@@ -182,7 +182,7 @@ class TestStudies:
         np.testing.assert_array_equal(here.slip, alone.slip)
         np.testing.assert_array_equal(here.edge_height, alone.edge_height)
 
-    def test_functions_make_it(self, own):
+    def test_sweep_over_function_that_builds_scene(self, own):
         def scene(mu):
             return rf.System(BLOCK, own.SlidingGround(friction=mu))
 
@@ -191,7 +191,7 @@ class TestStudies:
         assert float(runs.peak_rotation[1, 0]) == float(alone.peak_rotation) > 0.0
 
     @pytest.mark.long
-    def test_many_cases_are_as_one(self, system, monkeypatch):
+    def test_many_sweep_cases_match_single_runs(self, system, monkeypatch):
         """Side by side in lanes where it can be compiled; each comes to an end."""
         monkeypatch.setattr(study, "COMPILING_SHARE", math.inf)
         frictions = np.linspace(0.255, 0.4, 2 * study.MIN_CASES_IN_LANES if COMPILED else 50)
@@ -212,7 +212,7 @@ class TestStudies:
 
 
 @pytest.mark.skipif(not COMPILED, reason="this run does without compilation")
-def test_compiled_and_plain_agree(system):
+def test_compiled_and_uncompiled_runs_agree(system):
     compiled = system.simulate(PULSE, duration="1.5 s")
     with plainly():
         plain = system.simulate(PULSE, duration="1.5 s")
@@ -256,7 +256,7 @@ class TestRegistration:
 
         return Wedged
 
-    def test_a_part_of_no_registered_scene_is_refused(self):
+    def test_part_of_unregistered_scene_is_refused(self):
         with pytest.raises(AssemblyError, match="no scene that is registered is made of it"):
             rf.System(BLOCK, Wedge())
 
@@ -269,7 +269,7 @@ class TestRegistration:
             rf.System(Wedge())
         assert str(caught.value).count("(Wedged)") == 1
 
-    def test_columns_over_dimensions_of_its_own(self, wedged):
+    def test_columns_can_have_own_dimensions(self, wedged):
         class Layered(wedged):
             """With a table of its own."""
 
@@ -303,7 +303,7 @@ class TestRegistration:
             (None, "AttributeError"),
         ],
     )
-    def test_wrong_answers_lose_no_run(self, wedged, answer, words):
+    def test_wrong_answers_warn_without_losing_run(self, wedged, answer, words):
         class Wrong(wedged):
             """Gives what it has not declared."""
 
@@ -317,7 +317,7 @@ class TestRegistration:
         assert "slip" in response
         assert "residual_slip" not in response
 
-    def test_all_faults_are_told_and_nothing_is_registered(self):
+    def test_all_faults_are_reported_and_nothing_is_registered(self):
         before = [dict(table) for table in TABLES]
         with pytest.raises(ComponentError) as caught:
             rf.register(Bare, columns=[column(dims=("layer",)), column(name="2nd", dims=()), 3])
@@ -351,7 +351,7 @@ class TestRegistration:
         with pytest.raises(ComponentError, match=words):
             rf.register(wedged)
 
-    def test_tables_that_do_not_fit_the_system_are_told_at_once(self, wedged):
+    def test_inconsistent_table_sizes_are_reported_together(self, wedged):
         class Odd(wedged):
             """Has sizes of another system."""
 
@@ -371,7 +371,7 @@ class TestRegistration:
         ):  # fmt: skip
             assert fault in str(caught.value)
 
-    def test_columns_of_a_base(self):
+    def test_own_base_can_declare_columns(self):
         @dataclass(frozen=True)
         class Support(ext.PadSupport):
             """Elastic pads."""
@@ -416,7 +416,7 @@ class TestDiagnostics:
             (rf.WinklerSoil(stiffness="20 MPa", damping_ratio=0.2),),
         ],
     )
-    def test_they_are_had_of_any_scene(self, parts):
+    def test_diagnostics_work_in_any_scene(self, parts):
         rf.register(
             rf.extension.Diagnostic(
                 lambda state: 2.0 * state["rotation"], "twice", "rad", "twice the rotation"
@@ -436,7 +436,7 @@ class TestDiagnostics:
         np.testing.assert_allclose(response.pushed, absolute, rtol=1e-12)
         assert float(response.peak_pushed) >= float(np.abs(absolute).max())
 
-    def test_on_a_slope_the_ground_is_that_of_the_histories(self):
+    def test_diagnostic_on_slope_uses_ground_acceleration_of_histories(self):
         rf.register(
             lambda state: state["ground_acceleration"], name="pushed_by", unit="m/s^2",
             long_name="horizontal acceleration of the ground",
@@ -456,7 +456,7 @@ class TestDiagnostics:
         assert float(coarse.peak_pushed) == float(fine.peak_pushed)
         assert float(fine.peak_pushed) >= float(np.abs(fine.pushed).max())
 
-    def test_one_of_another_name_is_asked_for_in_vain(self, system):
+    def test_unknown_diagnostic_is_refused(self, system):
         with pytest.raises(AssemblyError, match=r"no 'edge_hight'; .*'edge_height'"):
             system.simulate(PULSE, outputs="edge_hight")
         assert "edge_height" not in system.simulate(PULSE)
@@ -468,7 +468,7 @@ class TestDiagnostics:
             (lambda _: 3.0, "the diagnostic 'odd' gave an array of shape (), for"),
         ],
     )
-    def test_one_that_fails_loses_no_run(self, system, function, words):
+    def test_failing_diagnostic_warns_without_losing_run(self, system, function, words):
         rf.register(function, name="odd", unit="1", long_name="what is not there")
         with pytest.warns(SolverWarning, match="the diagnostic 'odd' could not be computed"):
             response = system.simulate(PULSE, outputs=["odd", "edge_height"])
@@ -496,7 +496,7 @@ class TestDiagnostics:
             rf.register(pushed, **{**right, **given})
         assert "edge" not in SCHEMA
 
-    def test_names_are_for_functions(self, own):
+    def test_name_and_unit_are_refused_for_scenes_and_diagnostics(self, own):
         with pytest.raises(ComponentError, match="unit is for functions of the state"):
             rf.register(own.SlidingScene, unit="m")
         with pytest.raises(ComponentError, match="a Diagnostic has its name"):

@@ -46,14 +46,14 @@ def noise():
     )
 
 
-def test_it_imports_nothing_private():
+def test_example_imports_nothing_private():
     text = FILE.read_text(encoding="utf-8")
     found = re.findall(r"^(?:from|import) (rockframe\S*.*)$", text, re.MULTILINE)
     assert found == ["rockframe as rf", "rockframe import extension as ext"]
 
 
 @pytest.mark.parametrize("load", [0.2, 0.3, 0.5, 0.7])
-def test_a_slow_rotation_has_the_moment_in_closed_form(bed, monkeypatch, load):
+def test_static_moment_converges_to_closed_form(bed, monkeypatch, load):
     """Springs are midpoints of parts of the base: their error falls with the square."""
     apart = []
     for count in (20, 80):
@@ -84,7 +84,7 @@ def test_energies_balance_while_springs_yield_lift_and_land(bed, monkeypatch, da
     assert float(response.energy_residual) <= 1e-8
 
 
-def test_springs_that_cannot_yield_are_a_bed(bed, monkeypatch):
+def test_springs_that_cannot_yield_match_elastic_bed(bed, monkeypatch):
     """Of many springs, at small settlement: the bed in closed form is their limit."""
     monkeypatch.setattr(bed, "SPRINGS", 64)
     with plainly():
@@ -96,7 +96,7 @@ def test_springs_that_cannot_yield_are_a_bed(bed, monkeypatch):
     assert float(apart) < 2e-3 * float(np.abs(closed.rotation).max())
 
 
-def test_names_and_methods_of_laws_are_checked():
+def test_invalid_spring_law_raises():
     with pytest.raises(TypeError, match=r"Bad has no method energy; .* a field 'power', which is"):
 
         @ext.point_law

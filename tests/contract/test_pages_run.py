@@ -31,7 +31,7 @@ RECORDS = {"record.AT2": "NIS090.AT2", "TCU128-N.AT2": "PEERSMD_CHICHI_TCU128-N.
 @pytest.mark.wide
 @pytest.mark.filterwarnings("ignore::rockframe.errors.RockframeWarning")
 @pytest.mark.parametrize("page", PAGES, ids=[page.name for page in PAGES])
-def test_snippets_run_from_first_to_last(page, tmp_path, monkeypatch, capsys, request):
+def test_all_snippets_of_page_run(page, tmp_path, monkeypatch, capsys, request):
     if page.stem != "reports":  # of one page figures of reports are drawn
         request.getfixturevalue("no_pictures")
     text = page.read_text(encoding="utf-8")

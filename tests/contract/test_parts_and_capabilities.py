@@ -229,7 +229,7 @@ QUICK = ("stiff wall", "frame", "tendon")
         for name in SCENES for one in CAPABILITIES
     ],
 )  # fmt: skip
-def test_a_part_has_what_every_scene_has(name, capability, tmp_path):
+def test_every_part_supports_every_capability(name, capability, tmp_path):
     many = capability in (certificate, critical_scale, certified_report)
     if many and not COMPILED and name not in ("stiff wall", "frame"):
         pytest.skip("many runs of scenes that are slow in plain Python")

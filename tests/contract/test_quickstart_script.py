@@ -36,7 +36,7 @@ def test_a_missing_folder_is_made(script, record, tmp_path):
     assert {path.name for path in folder.iterdir()} == {"quickstart.nc", "quickstart.png"}
 
 
-def test_a_folder_that_cannot_be_made_is_told_before_the_work(script, record, capsys):
+def test_invalid_folder_is_reported_before_simulation(script, record, capsys):
     assert script(record, "--folder", record) == 1
     shown = capsys.readouterr()
     assert shown.out == ""
@@ -53,6 +53,6 @@ def test_errors_are_one_line(script, record, tmp_path, capsys):
     assert told.count("\n") == 1
 
 
-def test_a_component_needs_a_record(script, capsys):
+def test_component_option_requires_a_record(script, capsys):
     assert script("--component", "NS") == 2
     assert "--component" in capsys.readouterr().err

@@ -26,7 +26,7 @@ def as_conda(dependencies):
     return {f"{CONDA_NAMES.get(one[1], one[1])} {one[2]}" for one in found}
 
 
-def test_the_recipe_for_conda_forge_asks_for_what_the_project_asks_for():
+def test_conda_recipe_matches_pyproject():
     text = (ROOT / "docs/development/recipe/recipe.yaml").read_text(encoding="utf-8")
     everything = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))
     project = everything["project"]

@@ -14,7 +14,7 @@ NAMES = {
 }
 
 
-def test_the_table_is_that_of_the_command():
+def test_scenes_table_matches_data():
     found = {
         row["kind"]: row for row in json.loads((DOCS / "data/maximal_oracle.json").read_text())
     }
@@ -41,7 +41,7 @@ LEVELS = (
 )
 
 
-def test_the_table_of_accuracies_is_that_of_the_command():
+def test_accuracy_table_matches_data():
     found = json.loads((DOCS / "data/maximal_oracle_levels.json").read_text())
     assert {(row["kind"], row["variant"]) for row in found} == {
         (kind, variant) for kind in NAMES.values() for variant in ("plain", "eccentric", "inclined")
@@ -72,7 +72,7 @@ TIED = (
 )
 
 
-def test_the_table_of_tied_stacks_is_that_of_the_command():
+def test_tied_stacks_table_matches_data():
     found = json.loads((DOCS / "data/chain_ties_oracle.json").read_text())
     rows = table("validation_scenes.md", TIED)
     for one, row in zip(found, rows, strict=True):
@@ -82,7 +82,7 @@ def test_the_table_of_tied_stacks_is_that_of_the_command():
         assert [float(row[3]), float(row[4])] == [one["median"], one["worst"]]
 
 
-def test_the_table_of_another_seed_is_that_of_the_command():
+def test_second_seed_table_matches_data():
     found = {
         row["kind"]: row for row in json.loads((DOCS / "data/maximal_oracle_28.json").read_text())
     }

@@ -287,7 +287,7 @@ FLAGS = {
 WITH_UNIT = [row for row in SCHEMA.values() if row.unit is not None]
 
 
-def test_the_contract_is_in_the_table():
+def test_schema_contains_documented_variables():
     assert set(DIMENSIONS) | FLAGS | {"overturned"} <= set(SCHEMA)
     assert set(ENERGIES) <= set(SCHEMA)
     assert set(ENERGIES) == {name for name in SCHEMA if name.endswith("_energy")}
@@ -321,7 +321,7 @@ def test_units_have_the_dimensions_of_their_quantities():
         assert ("rad" in text) == bool(powers[3]), name
 
 
-def test_the_spelling_is_the_agreed_one():
+def test_units_have_agreed_spelling():
     word = r"(kg|m|s|rad|Hz|N|J)(\^-?[1-9])?"
     for row in WITH_UNIT:
         text = row.attributes()["units"]
@@ -339,7 +339,7 @@ def test_names_are_full_words():
         assert "standard_name" not in row.attributes(), name
 
 
-def test_long_names_tell_variables_apart():
+def test_long_names_are_unique():
     words = [row.long_name for row in SCHEMA.values()]
     assert len(set(words)) == len(words)
 
@@ -380,13 +380,13 @@ def test_contact_states_have_the_agreed_names(name, dims):
     assert attributes["flag_values"].tolist() == [0, 1, 2, 3]
 
 
-def test_truth_values_are_flags_too():
+def test_booleans_are_cf_flags():
     attributes = SCHEMA["overturned"].attributes()
     assert attributes["flag_values"].dtype == np.int8
     assert attributes["flag_values"].tolist() == [0, 1]
     assert attributes["flag_meanings"] == "false true"
 
 
-def test_events_on_the_soil_have_names_of_their_own():
+def test_soil_events_have_own_names():
     meanings = SCHEMA["event_kind"].attributes()["flag_meanings"].split()
     assert {"soil_separation", "soil_contact", "soil_pivot_change"} <= set(meanings)

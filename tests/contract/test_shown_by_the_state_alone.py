@@ -84,7 +84,7 @@ def shown(model, run, order):
         )  # fmt: skip
 
 
-def test_columns_do_not_depend_on_what_was_shown_before(run):
+def test_columns_do_not_depend_on_earlier_states(run):
     model, trajectory = run
     forwards = np.arange(len(trajectory.time))
     assert np.ptp(trajectory.state[:, :3], axis=0).max() > 0.0  # something moves
@@ -93,7 +93,7 @@ def test_columns_do_not_depend_on_what_was_shown_before(run):
         np.testing.assert_array_equal(found[name][::-1], values, err_msg=name)
 
 
-def test_energies_do_not_depend_on_what_was_shown_before(run):
+def test_energies_do_not_depend_on_earlier_states(run):
     model, trajectory = run
     with plainly():
         expected = energies_of(model, trajectory)
@@ -101,7 +101,7 @@ def test_energies_do_not_depend_on_what_was_shown_before(run):
         np.testing.assert_array_equal(energies_of(model, trajectory), expected)
 
 
-def test_samples_at_ends_of_steps_are_shown_as_by_themselves(run):
+def test_samples_at_step_ends_match_their_states(run):
     model, trajectory = run
     assert len(trajectory.outputs_in_steps) == len(PULSE) // 3  # as long as the ground has samples
     events = trajectory.events.time
@@ -118,7 +118,7 @@ def test_samples_at_ends_of_steps_are_shown_as_by_themselves(run):
         )
 
 
-def test_the_first_sample_shows_what_holds_after_all_that_happens_at_once():
+def test_first_sample_follows_all_events_at_start():
     push = rf.GroundMotion.from_arrays(
         (np.repeat([5.0, 0.0], [10, 10]), "m/s^2"), time_step="0.02 s"
     )

@@ -10,7 +10,7 @@ HEAD = '| part | `"fast"`: a step | the run | `"standard"`: a step | the run | s
 MEASURED = json.loads((DOCS / "data" / "parts_cost.json").read_text(encoding="utf-8"))
 
 
-def test_every_part_stands_in_the_table():
+def test_every_measured_part_is_in_table():
     assert [row[0] for row in table(PAGE, HEAD)] == list(MEASURED)
 
 
@@ -30,7 +30,7 @@ def test_a_slack_restrainer_adds_no_steps():
             assert 0 <= level["steps with"] - level["steps without"] <= most
 
 
-def test_what_histories_cost_is_what_was_measured():
+def test_documented_cost_of_histories_matches_measurements():
     columns = ("the loop [ms]", "columns [ms]", "peaks [ms]", "dataset [ms]")
     head = "| | the loop [ms] | without histories | with histories | " + " | ".join(columns[1:])
     keys = (

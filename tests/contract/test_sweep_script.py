@@ -10,7 +10,7 @@ import xarray as xr
 SCRIPT = Path(__file__).resolve().parents[2] / "examples" / "size_and_pulse.py"
 
 
-def test_it_prints_what_overturned_and_keeps_the_runs(monkeypatch, tmp_path, capsys):
+def test_script_prints_verdict_and_saves_resumable_runs(monkeypatch, tmp_path, capsys):
     def run(*arguments):
         monkeypatch.setattr(sys, "argv", [str(SCRIPT), *map(str, arguments)])
         with pytest.raises(SystemExit) as left:

@@ -53,7 +53,7 @@ def runs(request):
     return rf.sweep(SYSTEM, PULSE, scale=np.linspace(0.5, 1.5, 4), **fast)
 
 
-def test_files_give_it_back(runs, tmp_path):
+def test_sweep_survives_netcdf_round_trip(runs, tmp_path):
     runs.to_netcdf(tmp_path / "runs.nc")
     runs.to_netcdf(tmp_path / "again.nc")
     with xr.open_dataset(tmp_path / "runs.nc") as again:
@@ -64,7 +64,7 @@ def test_files_give_it_back(runs, tmp_path):
     assert rf.System.from_dataset(again).to_dict() == rf.System.from_dataset(runs).to_dict()
 
 
-def test_labels_are_those_of_the_schema_and_cf(runs, tmp_path):
+def test_labels_follow_schema_and_cf(runs, tmp_path):
     for name, variable in runs.variables.items():
         attributes = variable.attrs
         assert attributes["long_name"], name
@@ -92,7 +92,7 @@ def test_labels_are_those_of_the_schema_and_cf(runs, tmp_path):
             assert "_FillValue" not in file[name].ncattrs(), name
 
 
-def test_status_and_message_are_there_for_every_case(runs):
+def test_every_case_has_status_and_message(runs):
     assert runs.status.dtype == np.int8
     told = runs.message
     assert told.dtype == object
@@ -105,7 +105,7 @@ def test_status_and_message_are_there_for_every_case(runs):
     assert runs.attrs["verdict"].startswith(f"Of all {runs.status.size} cases of the sweep ")
 
 
-def test_tables_and_joining_take_it(runs):
+def test_table_and_concat_accept_sweep(runs):
     table = rf.table(runs)
     assert len(table) == runs.status.size
     assert set(table["status"]) <= set(SCHEMA["status"].attributes()["flag_meanings"].split())
@@ -125,7 +125,7 @@ def histories_missing(runs):
 
 
 @pytest.mark.long  # nor is tqdm there where all runs in the caller, in test_imports.py
-def test_a_sweep_needs_neither_tqdm_nor_dask():
+def test_sweep_runs_without_tqdm_and_dask():
     code = """
 import sys
 for name in ("tqdm", "distributed", "dask"):

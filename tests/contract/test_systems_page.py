@@ -42,7 +42,7 @@ SCENES = {
 }
 
 
-def test_the_tables_of_peaks():
+def test_documented_peaks_and_impacts_are_reproduced():
     options = {name: cells for name, *cells in table(PAGE, "| | peak | impacts |")}
     assert list(options) == list(OPTIONS)
     for name, (peak, impacts) in options.items():
@@ -60,7 +60,7 @@ def test_the_tables_of_peaks():
         assert int(run.impact_count) == int(impacts)
 
 
-def test_all_arguments_of_simulate_and_their_defaults():
+def test_documented_arguments_and_defaults_of_simulate_match():
     rows = table(PAGE, "| argument | default | meaning | explained in |")
     arguments = dict(inspect.signature(rf.System.simulate).parameters)
     del arguments["self"]
@@ -74,7 +74,7 @@ def test_all_arguments_of_simulate_and_their_defaults():
             assert said_default == f"`{shown}`"
 
 
-def test_every_argument_is_explained_where_the_table_says():
+def test_every_argument_is_explained_on_linked_page():
     for name, _, _, where in table(PAGE, "| argument | default | meaning | explained in |"):
         pages = re.findall(r"\{doc\}`(\w+)`", where)
         texts = [read(f"guide/{page}.md") for page in pages] or [read(PAGE)]
@@ -82,7 +82,7 @@ def test_every_argument_is_explained_where_the_table_says():
         assert any(word in text for text in texts), f"{name} is not on {pages}"
 
 
-def test_the_energies_of_a_block_released_or_shaken():
+def test_documented_energies_are_reproduced():
     """The numbers of "Energy" and of "Impact and restraint", on the same block and pads."""
     words = "of 4.85 m by 19.4 m and 600 t on pads of"
     assert words in " ".join(read("theory/energy.md").split())

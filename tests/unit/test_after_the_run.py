@@ -60,7 +60,7 @@ def failing(request, monkeypatch):
 
 
 @pytest.mark.filterwarnings("ignore::rockframe.errors.SolverWarning")
-def test_a_run_tells_what_could_not_be_computed(failing):
+def test_failed_postprocessing_step_warns_and_run_survives(failing):
     asked = {"accuracy": "fast" if failing == "second_look" else "standard"}
     asked |= {"certify": failing == "certify", **ASKED}
     found = rf.System(BLOCK).simulate(PULSE, **asked)
@@ -74,7 +74,7 @@ def test_a_run_tells_what_could_not_be_computed(failing):
     assert math.isnan(float(again.uplift_angle)) == (failing == "uplift_angle")
 
 
-def test_columns_that_the_schema_does_not_have_cost_the_histories_alone(monkeypatch):
+def test_unknown_output_column_loses_only_histories(monkeypatch):
     answers = running.compute_outputs
 
     def with_another(*given):
@@ -89,7 +89,7 @@ def test_columns_that_the_schema_does_not_have_cost_the_histories_alone(monkeypa
 
 
 @pytest.mark.parametrize("accuracy", ["standard", "fast"])
-def test_a_case_of_a_sweep_keeps_its_result(monkeypatch, accuracy):
+def test_failed_postprocessing_preserves_sweep_results(monkeypatch, accuracy):
     monkeypatch.setattr(running, "may_overturn_later", broken)
     with pytest.warns(ModelWarning, match="left out on purpose"):
         found = rf.sweep(
@@ -98,7 +98,7 @@ def test_a_case_of_a_sweep_keeps_its_result(monkeypatch, accuracy):
     assert (found.peak_rotation > 0.0).all()
 
 
-def test_an_interrupt_is_no_failure(monkeypatch):
+def test_interrupt_in_postprocessing_propagates(monkeypatch):
     def interrupted(*_, **__):
         raise KeyboardInterrupt
 

@@ -33,7 +33,7 @@ def demand(values):
     return values["demand"][None]
 
 
-def test_what_is_largest_just_after_an_event_is_found():
+def test_peak_just_after_an_event_is_found():
     """The friction demand jumps at an event: the samples before it and long after see nothing."""
     found = along([1.0, 1.0, 1.0, 1.0], {0: 0.5, 2: 7.0})
     (peak,), (time,) = found.largest(demand)
@@ -43,13 +43,13 @@ def test_what_is_largest_just_after_an_event_is_found():
     assert lasted == pytest.approx(0.5 * (7.0 - 4.0) / (7.0 - 1.0))
 
 
-def test_what_is_largest_just_before_an_event_is_found():
+def test_peak_just_before_an_event_is_found():
     found = along([1.0, 7.0, 1.0], {0: 0.5, 2: 1.0})
     (peak,), (time,) = found.largest(demand)
     assert (peak, time) == (7.0, 1.0)
 
 
-def test_a_peak_inside_a_step_is_that_of_a_parabola():
+def test_peak_inside_a_step_is_found_by_a_parabola():
     def inside(which):
         place = 0.5 * (which[:, None] - 1 + FRACTIONS)
         return {"demand": (3.0 - (place - 0.77) ** 2).ravel()}
@@ -60,7 +60,7 @@ def test_a_peak_inside_a_step_is_that_of_a_parabola():
     assert time == pytest.approx(0.77, rel=1e-12)
 
 
-def test_from_without_bound_it_falls_as_fast_as_its_reciprocal():
+def test_infinite_demand_is_interpolated_by_its_reciprocal():
     found = along([2.0, 0.0], {0: math.inf})
     (peak,), (time,) = found.largest(demand)
     assert (peak, time) == (math.inf, 0.0)
@@ -68,20 +68,20 @@ def test_from_without_bound_it_falls_as_fast_as_its_reciprocal():
     assert (first, lasted) == (0.0, 0.25)  # 1/q from 0 to 1/2 passes 1/4 in the middle
 
 
-def test_never_above_is_said():
+def test_demand_never_above_limit_has_no_time():
     first, lasted = along([1.0, 2.0], {0: 0.0}).above(lambda values: values["demand"], 2.0)
     assert math.isnan(first)
     assert lasted == 0.0
 
 
-def test_of_many_that_are_as_large_the_first_is_told():
+def test_first_of_equal_peaks_is_reported():
     found = along([1.0, 1.0, *[math.inf, 1.0] * 400], {0: 1.0})
     (peak,), (time,) = found.largest(demand)
     assert peak == math.inf
     assert 0.5 < time <= 1.5
 
 
-def test_the_largest_end_is_found_among_many_steps_that_might_exceed_it():
+def test_peak_at_step_end_is_found_among_many_candidate_steps():
     """Kinks of the ground motion have high bounds; the peak is at the end of a smooth rise."""
     kinks, rise = [1.0, 6.0] * 100, list(np.linspace(1.0, 7.0, 50))
     (peak,), (time,) = along(kinks + rise, {0: 1.0}).largest(demand)
@@ -89,7 +89,7 @@ def test_the_largest_end_is_found_among_many_steps_that_might_exceed_it():
 
 
 @pytest.mark.parametrize("jump", [1, 4])
-def test_no_parabola_goes_through_a_kink(jump):
+def test_no_parabola_is_fitted_through_a_kink(jump):
     """A base that presses again and slips needs its friction at once, and no more than that."""
 
     def inside(which):

@@ -10,7 +10,7 @@ from rockframe.errors import ComponentError, RockframeError
 
 
 @pytest.mark.parametrize("given", [3, np.int64(3), np.uint8(3), np.array(3)])
-def test_whole_numbers_of_python_and_numpy(given):
+def test_python_and_numpy_integers_are_accepted(given):
     found = checked_integer(given, owner="Frame", name="storeys", lowest=3, highest=3)
     assert found == 3
     assert type(found) is int
@@ -19,7 +19,7 @@ def test_whole_numbers_of_python_and_numpy(given):
 @pytest.mark.parametrize(
     "given", [True, np.True_, 3.0, np.float64(3.0), "3", None, [3], np.array([3]), 2, 6, -3]
 )
-def test_what_is_none_or_out_of_range(given):
+def test_non_integers_and_out_of_range_values_are_refused(given):
     with pytest.raises(ComponentError, match=r"Frame: storeys must be a whole number from 3 to 5"):
         checked_integer(given, owner="Frame", name="storeys", lowest=3, highest=5)
 
@@ -31,7 +31,7 @@ def test_without_an_upper_bound():
 
 
 @pytest.mark.parametrize("given", [np.array(0.5), xr.DataArray(0.5)])
-def test_an_array_without_dimensions_is_no_list(given):
+def test_zero_dimensional_arrays_are_refused_as_lists(given):
     """It calls itself iterable, but has no elements."""
     system = rf.System(rf.Block(width="1 m", height="5 m", mass="1 t"))
     motion = rf.GroundMotion.sine_pulse("1 m/s^2", "1 Hz")

@@ -50,7 +50,7 @@ def test_parts_come_in_any_order(name):
         assert system.simulate().drop_attrs().identical(first.drop_attrs())
 
 
-def test_the_assembly_picks_the_model():
+def test_parts_determine_the_model():
     for name, model in MODELS.items():
         assert assembled(name).describe().splitlines()[0] == f"Model: {model}"
         assert assembled(name).simulate(pulse(), outputs=None).attrs["model"] == model
@@ -107,7 +107,7 @@ def test_a_system_does_not_change_its_parts():
         ((block(), rf.System(block())), ["not a part"]),
     ],
 )
-def test_parts_that_make_no_scene_are_refused(parts, words):
+def test_unsupported_part_combinations_are_refused(parts, words):
     error = faults(*parts)
     for word in words:
         assert word in str(error)
@@ -134,7 +134,7 @@ def test_parts_that_make_no_scene_are_refused(parts, words):
         ((block(), pads()), {"coupling": "xx"}, "got 'xx'"),
     ],
 )
-def test_faults_that_no_other_scene_would_mend_do_not_bring_the_scenes(parts, options, words):
+def test_unrelated_faults_do_not_list_supported_scenes(parts, options, words):
     error = faults(*parts, **options)
     assert words in str(error)
     assert "scenes" not in str(error)
@@ -169,7 +169,7 @@ def test_systems_of_equal_parts_and_options_are_equal(name):
     ],
     ids=["still", "pulse", "two pulses", "record"],
 )
-def test_a_system_survives_the_way_through_text(name, motion):
+def test_system_survives_json_pickle_and_copy(name, motion):
     others = () if motion is None else (motion,)
     system = assembled(name, *others, restraint="centre", gravity="9.8 m/s^2")
     text = json.dumps(system.to_dict(), allow_nan=False)
@@ -184,7 +184,7 @@ def test_a_system_survives_the_way_through_text(name, motion):
     "description",
     [{}, {"parts": 3}, {"parts": []}, {"parts": [{"type": "Brick"}]}, 3, None, "Block"],
 )
-def test_what_describes_no_system_is_refused(description):
+def test_invalid_system_description_is_refused(description):
     with pytest.raises(SchemaError, match="does not describe a system"):
         rf.System.from_dict(description)
 
@@ -203,14 +203,14 @@ def test_what_describes_no_system_is_refused(description):
         ),
     ],
 )
-def test_what_is_wrong_in_a_description_is_named(change, words):
+def test_wrong_keys_in_a_description_are_named(change, words):
     told = json.loads(json.dumps(assembled("coupled").to_dict()))
     change(told)
     with pytest.raises(SchemaError, match=f"does not describe a system: {words}"):
         rf.System.from_dict(told)
 
 
-def test_a_path_is_no_dataset():
+def test_from_dataset_refuses_a_path():
     words = r"System\.from_dataset: found 'run\.nc'; .*xr\.open_dataset first"
     with pytest.raises(SchemaError, match=words):
         rf.System.from_dataset("run.nc")
@@ -224,7 +224,7 @@ def test_a_system_is_immutable():
     assert system.gravity.m_as("m/s^2") == 9.80665
 
 
-def test_calls_that_do_not_fit_are_refused_in_the_name_of_the_system():
+def test_signature_errors_name_the_system():
     with pytest.raises(TypeError, match=r"System\.__init__\(\) got an unexpected .* 'block'"):
         rf.System(block=block())
     with pytest.raises(TypeError, match=r"System\.describe\(\) takes"):
@@ -290,7 +290,7 @@ def test_every_fault_of_a_stack_is_listed_at_once():
     assert len(error.faults) == 2
 
 
-def test_a_cap_exactly_as_wide_as_the_building_fits():
+def test_cap_exactly_as_wide_as_the_block_is_accepted():
     for width in ("2 m", "200 cm", f"{2.0 / 0.3048!r} ft", None):
         rf.System(block(), cap(width=width), soil())
     for width in ("1.99999 m", "1.999999999 m"):
@@ -319,7 +319,7 @@ def test_a_single_fault_is_one_sentence():
     ],
 )
 class TestOptions:
-    def test_strings_and_members_are_taken(self, name, values):
+    def test_options_accept_strings_and_enum_members(self, name, values):
         for value in values:
             system = rf.System(block(), pads(), **{name: value})
             member = getattr(system, name)
@@ -329,7 +329,7 @@ class TestOptions:
             assert system.to_dict()[name] == value
 
     @pytest.mark.parametrize("bad", ["", "Finite", "CENTRE", None, True, 0, [], {}, object, "x"])
-    def test_others_are_refused_with_the_choice(self, name, values, bad):
+    def test_invalid_options_are_refused_listing_the_choices(self, name, values, bad):
         error = faults(block(), pads(), **{name: bad})
         assert name in str(error)
         assert repr(bad) in str(error)
@@ -342,7 +342,7 @@ def test_unknown_options_are_refused():
         rf.System(block(), pads(), restrain="centre")
 
 
-def test_gravity_is_standard_unless_given():
+def test_gravity_defaults_to_standard():
     assert rf.System(block()).options.gravity == 9.80665
     assert rf.System(block(), gravity="1 g_0").options.gravity == pytest.approx(9.80665)
     assert rf.System(block(), gravity="981 Gal").options.gravity == pytest.approx(9.81)
@@ -350,7 +350,7 @@ def test_gravity_is_standard_unless_given():
         assert "gravity" in str(faults(block(), gravity=bad))
 
 
-def test_parts_are_iterated_over_and_found_by_their_slots():
+def test_parts_are_iterable_and_indexed_by_slot():
     system = rf.System(pads(), block(), pulse())
     assert list(system.parts) == [block(), pads(), pulse()]
     assert len(system.parts) == 3

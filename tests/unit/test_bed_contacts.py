@@ -20,7 +20,7 @@ def test_each_pair_has_its_number():
 
 
 @pytest.mark.parametrize(("left", "right"), ENDS)
-def test_what_the_bed_says_of_a_contact(left, right):
+def test_bed_interprets_contact_numbers(left, right):
     contact = both_contacts(left, right)
     assert BED.is_held(contact, True) == (left == DOWN)
     assert BED.is_held(contact, False) == (right == DOWN)

@@ -40,7 +40,7 @@ X, Y = RNG.uniform(0.1, 0.9, 400), RNG.uniform(-3.0, 3.0, 400)
         lambda x, y: sum(np.array([x, 1.0]) * np.array([2.0, 3.0]) + np.abs(np.array([y, x]))),
     ],
 )
-def test_arithmetic_has_the_bits_of_each_case_alone(work):
+def test_case_arithmetic_is_bit_identical_to_scalars(work):
     together = work(CaseArray(X), CaseArray(Y)).values
     alone = np.array([work(x, y) for x, y in zip(X.tolist(), Y.tolist(), strict=True)])
     assert together.tobytes() == alone.tobytes()
@@ -57,7 +57,7 @@ def course(x):
     return x, rounds
 
 
-def test_cases_are_divided_where_they_go_different_ways():
+def test_cases_are_split_at_differing_branches():
     found, rounds = np.full(400, np.nan), np.full(400, -1)
     for some, (values, count) in run_by_branches(
         lambda some: course(CaseArray(X[some])), np.arange(400)
@@ -71,7 +71,7 @@ def test_cases_are_divided_where_they_go_different_ways():
         assert (found[k], rounds[k]) == course(float(X[k]))
 
 
-def test_comparisons_agree_or_tell_which_cases_differ():
+def test_comparisons_agree_or_raise_branches_differ():
     number = CaseArray(np.array([1.0, 2.0, 3.0]))
     assert number > 0.5
     assert (number == 4.0) is False
@@ -89,14 +89,14 @@ def test_comparisons_agree_or_tell_which_cases_differ():
 @pytest.mark.parametrize(
     "work", [float, str, repr, "{:.3g}".format, math.sin, round, lambda x: x % 2.0]
 )
-def test_what_can_be_done_for_one_case_only_is_refused_past_every_handler(work):
+def test_scalar_only_operations_raise_single_case_only(work):
     with pytest.raises(SingleCaseOnly):
         work(CaseArray(np.array([1.0, 2.0])))
     assert not issubclass(SingleCaseOnly, Exception)
     assert not issubclass(BranchesDiffer, Exception)
 
 
-def test_divisions_by_zero_are_left_to_each_case():
+def test_division_by_zero_falls_back_to_single_cases():
     def divided(some):
         return 1.0 / CaseArray(np.where(some < 50, 0.0, 1.0))
 
@@ -104,7 +104,7 @@ def test_divisions_by_zero_are_left_to_each_case():
     assert len(list(run_by_branches(divided, np.arange(50, 100)))) == 1
 
 
-def test_numbers_that_all_cases_share_are_spread():
+def test_shared_numbers_are_broadcast_to_cases():
     assert values_by_case(2, 3).tolist() == [2.0, 2.0, 2.0]
     assert values_by_case(CaseArray(X), 400) is X
     assert case_arrays.python_number(np.float64(2.0)) == 2.0

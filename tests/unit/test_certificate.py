@@ -50,7 +50,7 @@ def test_far_from_the_boundary():
     assert 60 <= run.attrs["certificate_runs"] <= 200
 
 
-def test_the_run_itself_is_the_same():
+def test_certification_does_not_change_the_run():
     plain = SYSTEM.simulate(PULSE, free_vibration="4 s")
     xr.testing.assert_identical(certified()[list(plain)].drop_attrs(), plain.drop_attrs())
 
@@ -78,7 +78,7 @@ def test_the_margin_is_the_distance_to_the_boundary(off, side):
 
 
 @pytest.mark.parametrize("side", [-1.0, 1.0])
-def test_near_the_boundary_it_says_so(side):
+def test_certificate_near_the_boundary(side):
     run = certified(PULSE.scaled(edge() * (1.0 - side * 1e-4)))
     assert bool(run.overturned) == (side < 0.0)
     assert not bool(run.verdict_robust)
@@ -89,7 +89,7 @@ def test_near_the_boundary_it_says_so(side):
     assert f"scaled {'up' if side > 0.0 else 'down'} by 0.0" in text
 
 
-def test_a_verdict_that_hangs_on_the_tolerance_is_not_converged():
+def test_tolerance_dependent_verdict_is_not_converged():
     found = certificate_of(lambda _, plan: plan.accuracy.rtol > 1e-5)
     assert not found.converged
     assert found.robust
@@ -99,13 +99,13 @@ def test_a_verdict_that_hangs_on_the_tolerance_is_not_converged():
     )
 
 
-def test_a_verdict_that_only_a_tighter_tolerance_overturns_is_not_converged():
+def test_overturning_only_at_tighter_tolerance_is_not_converged():
     found = certificate_of(lambda _, plan: plan.accuracy.rtol < 1e-5)
     assert not found.converged
     assert "the body stands, but with a tolerance 100 times tighter it overturns" in found.sentence
 
 
-def test_a_verdict_that_hangs_on_one_parameter_is_not_robust():
+def test_parameter_dependent_verdict_is_not_robust():
     stiffer = 20.01
     found = certificate_of(
         lambda system, _: system.parts.pads.to_dict()["frequency_ratio"] > stiffer
@@ -121,7 +121,7 @@ def test_parameters_that_change_the_verdict_are_counted():
     assert f"(and {changes - 1} more) it overturns" in found.sentence
 
 
-def test_a_peak_that_a_parameter_lowers_counts_as_one_that_it_raises():
+def test_sensitivity_counts_lowered_and_raised_peaks():
     run, plan = pretended(lambda *_: False), planned()
 
     def lower(system, plan):
@@ -132,7 +132,7 @@ def test_a_peak_that_a_parameter_lowers_counts_as_one_that_it_raises():
     assert found.peak_sensitivity == pytest.approx(0.0801)
 
 
-def test_nudged_scenes_keep_their_options():
+def test_nudged_scenes_preserve_options():
     cap, soil = (
         rf.CushionCap(height="0.5 m", mass="10 t"),
         rf.WinklerSoil(stiffness="30 MPa", damping_ratio=0.1),
@@ -149,7 +149,7 @@ def test_nudged_scenes_keep_their_options():
         assert kept.items() <= scene_at(1e-3).to_dict().items(), words
 
 
-def test_a_nudge_that_makes_parts_misfit_is_left_out():
+def test_nudges_that_make_parts_incompatible_are_skipped():
     """A cap as wide as the block can be no narrower, nor the block any wider."""
     block = rf.Block(width="2 m", height="8 m", mass="50 t")
     cap = rf.CushionCap(width="2 m", height="0.5 m", mass="10 t")
@@ -161,13 +161,13 @@ def test_a_nudge_that_makes_parts_misfit_is_left_out():
     assert at["width of the body"](0.001) is None
 
 
-def test_what_a_scene_has_warned_of_its_certificate_does_not_repeat():
+def test_certificate_does_not_repeat_warnings_of_the_scene():
     with pytest.warns(ModelWarning, match="restitution"):
         system = rf.System(BLOCK, rf.RigidGround(restitution=1.0))
     assert "certificate" in certified(system=system).attrs
 
 
-def test_the_runs_beside_are_counted():
+def test_certificate_counts_its_runs():
     made = []
     found = certificate_of(lambda _, plan: made.append(plan) or False)
     assert found.runs == len(made) - 1  # the first is the run itself
@@ -202,7 +202,7 @@ def test_a_margin_has_no_floor(edge):
     assert not found.robust or edge == 1e-3
 
 
-def test_a_peak_that_comes_near_to_overturning_is_looked_into():
+def test_overturning_island_near_high_peaks_is_found():
     """An island of overturning between two scales of the first row, told by the peaks about it."""
     middle, half = 0.3172, 0.0008
 
@@ -231,7 +231,7 @@ def certified_on_courses_of_their_own(**options):
     return certify(SYSTEM.assembly, plan, run(SYSTEM.assembly, plan), asked, run)
 
 
-def test_a_course_that_cannot_be_followed_ends_the_margin():
+def test_margin_ends_where_the_course_is_unresolved():
     found = certified_on_courses_of_their_own()
     assert 0.09 < found.margin < 0.12
     assert math.isnan(found.flip)
@@ -241,13 +241,13 @@ def test_a_course_that_cannot_be_followed_ends_the_margin():
 
 
 @pytest.mark.long
-def test_more_runs_follow_a_course_no_less_far():
+def test_more_runs_do_not_reduce_the_margin():
     found, more = certified_on_courses_of_their_own(), certified_on_courses_of_their_own(runs=400)
     assert 200 < more.runs <= 400
     assert more.margin >= found.margin
 
 
-def test_a_course_that_is_lost_beside_the_run_says_how_many_runs_lost_it():
+def test_unresolved_course_near_the_run_reports_number_of_runs():
     rng = np.random.default_rng(0)
 
     def run(_, plan):
@@ -262,7 +262,7 @@ def test_a_course_that_is_lost_beside_the_run_says_how_many_runs_lost_it():
     assert told in found.sentence
 
 
-def test_the_peak_of_a_standing_body_must_be_sure_to_stay_below():
+def test_uncertain_peak_near_overturning_is_not_converged():
     def run(_, plan):
         left = 0.01 if plan.accuracy.rtol > 1e-5 else 0.004
         return RunSummary(False, 0.1, (left,), math.nan, 0, 0.001)
@@ -273,7 +273,7 @@ def test_the_peak_of_a_standing_body_must_be_sure_to_stay_below():
     assert "its peak rotation is uncertain by" in found.sentence
 
 
-def test_parameters_are_tried_inside_the_nudge():
+def test_parameters_are_also_varied_within_the_nudge():
     """A band of overturning well inside, with the nudge itself beyond it."""
     found = certificate_of(
         lambda system, _: 20.009 < system.parts.pads.to_dict()["frequency_ratio"] < 20.011
@@ -283,7 +283,7 @@ def test_parameters_are_tried_inside_the_nudge():
 
 
 @pytest.mark.parametrize(("lower", "upper"), [(0.98, 1.027), (0.973, 1.02)])
-def test_of_two_changes_the_nearer_counts(lower, upper):
+def test_margin_uses_the_nearer_of_two_flips(lower, upper):
     """Both within one interval of the geometric row."""
     found = certificate_of(lambda _, plan: not lower < plan.motion.si.peak / PULSE.si.peak < upper)
     assert 0.02 * (1.0 - 2.0 * RESOLUTION) <= found.margin <= 0.02
@@ -302,7 +302,7 @@ def test_of_two_changes_the_nearer_counts(lower, upper):
         (0.98, "The body stands also .* No other verdict .* another verdict is 0.979"),
     ],
 )
-def test_a_margin_of_more_than_a_hundredth_is_not_near(edge, words):
+def test_margin_above_one_percent_is_not_near_the_boundary(edge, words):
     found = certificate_of(
         lambda _, plan: (plan.motion.si.peak / PULSE.si.peak - edge) * (edge - 1.0) > 0.0
     )

@@ -78,7 +78,7 @@ def combinations():
                 )  # fmt: skip
 
 
-def test_the_sentence_says_what_the_numbers_say():
+def test_certificate_sentence_matches_its_numbers():
     """Whatever was found: the flip that is known, the margin, and whether the verdict is sure."""
     seen = set()
     for found in combinations():
@@ -112,7 +112,7 @@ def test_the_sentence_says_what_the_numbers_say():
     assert {one[:3] for one in seen} == set(itertools.product((True, False), repeat=3))
 
 
-def test_a_reach_within_the_nudge_is_all_that_is_asked():
+def test_reach_smaller_than_the_nudge_is_sufficient():
     same = {scale: RunSummary(False, 0.1, (0.5,)) for scale in (-0.01, 0.01)}
     along = Scan(0.01, None, None, followed=True, tried=same)
     wanted = rf.Certification(nudge=0.1, reach=0.01)
@@ -121,7 +121,7 @@ def test_a_reach_within_the_nudge_is_all_that_is_asked():
     assert found.sentence.startswith("The body stands also with")
 
 
-def test_a_run_that_goes_on_is_judged_by_whether_it_falls_flat():
+def test_continued_run_is_judged_by_falling_flat():
     """Under a pulse that brings the block back from beyond the angle, up to 3.735 of it."""
     system = rf.System(rf.Block(width="1 m", height="5 m", mass="10 t"))
     pulse = rf.GroundMotion.sine_pulse("2.5 m/s^2", "1 Hz").scaled(3.70)
@@ -137,7 +137,7 @@ def test_a_run_that_goes_on_is_judged_by_whether_it_falls_flat():
     assert "scaled up by 0.9" in run.attrs["certificate"]
 
 
-def test_no_scale_within_reach():
+def test_margin_is_the_reach_if_no_scale_flips():
     found = certificate_of(lambda _, plan: plan.motion.si.peak > 1.6 * PULSE.si.peak)
     assert found.margin == 0.5
     assert math.isnan(found.flip)
@@ -155,7 +155,7 @@ def test_a_run_that_was_cut_off_has_no_certificate():
     assert all(math.isnan(run[name]) for name in NAMES[2:])
 
 
-def test_runs_beside_that_are_cut_off_are_no_support():
+def test_unfinished_nearby_runs_do_not_support_the_verdict():
     tighter = certificate_of(lambda _, plan: None if plan.accuracy.rtol < 1e-5 else False)
     assert not tighter.converged
     assert math.isnan(tighter.peak_error)
@@ -189,7 +189,7 @@ def test_fixed_steps_are_certified_by_a_tolerance():
     assert "with adaptive steps instead of fixed ones" in run.attrs["certificate"]
 
 
-def test_the_sensitivity_is_that_of_nudged_parameters():
+def test_sensitivity_equals_change_under_nudged_parameters():
     run = certified(certify=rf.Certification(nudge=0.02))
     peaks = [float(run.peak_rotation)]
     for part in (BLOCK, PADS):
@@ -206,7 +206,7 @@ def test_the_sensitivity_is_that_of_nudged_parameters():
     assert float(run.peak_sensitivity) == pytest.approx(expected, rel=0.05)
 
 
-def test_without_a_motion_the_start_is_scaled():
+def test_initial_state_is_scaled_without_a_motion():
     start = rf.InitialState(rotation=f"{0.9 * BLOCK.si.overturning_angle!r} rad")
     run = certified(None, duration="20 s", initial=start)
     assert not bool(run.overturned)
@@ -215,7 +215,7 @@ def test_without_a_motion_the_start_is_scaled():
 
 
 @pytest.mark.parametrize("share", [0.0, 0.3])
-def test_the_margin_of_a_start_is_that_of_its_energy(share):
+def test_margin_of_an_initial_state_follows_from_energy(share):
     """A rigid block overturns if it can lift its centre of mass above the corner."""
     block, edge = rf.Block.from_size(radius="2 m", slenderness=4, mass="1 t"), 1.1
     angle = block.si.overturning_angle
@@ -228,7 +228,7 @@ def test_the_margin_of_a_start_is_that_of_its_energy(share):
     assert float(run.verdict_margin) == pytest.approx(edge - 1.0, rel=2.0 * RESOLUTION)
 
 
-def test_a_start_is_not_scaled_beyond_a_right_angle():
+def test_initial_state_is_not_scaled_beyond_a_right_angle():
     low = rf.System(rf.Block(width="4 m", height="3 m", mass="1 t"))
     run = certified(
         None,
@@ -241,7 +241,7 @@ def test_a_start_is_not_scaled_beyond_a_right_angle():
     assert float(run.verdict_margin) == 0.9
 
 
-def test_at_rest_nothing_can_be_scaled():
+def test_run_at_rest_has_no_margin():
     run = certified(None, duration="1 s")
     assert math.isnan(run.verdict_margin)
     assert bool(run.verdict_robust)
@@ -251,7 +251,7 @@ def test_at_rest_nothing_can_be_scaled():
     )
 
 
-def test_a_run_that_goes_on_is_compared_with_runs_that_go_on():
+def test_continued_run_is_compared_with_continued_runs():
     strong = PULSE.scaled(3.0 * edge())
     run = certified(strong, overturning="continue")
     assert bool(run.overturned)
@@ -260,7 +260,7 @@ def test_a_run_that_goes_on_is_compared_with_runs_that_go_on():
     assert float(run.peak_sensitivity) < 1e-9
 
 
-def test_sub_steps_that_just_do_for_the_run_are_certified():
+def test_barely_sufficient_substeps_are_certified():
     pads = rf.TwoSpringSupport(frequency_ratio=324.57, damping_ratio=0.1)
     system = rf.System(BLOCK, pads)
     given = rf.Accuracy(substeps=4)
@@ -296,7 +296,7 @@ def test_every_scene_can_be_certified(parts, coupling, tmp_path):
 
 
 @pytest.mark.parametrize("given", [1, "yes", None, 0.01])
-def test_what_is_no_certification_is_refused(given):
+def test_invalid_certify_option_is_refused(given):
     with pytest.raises(ComponentError, match="must be True, False, 'proved' or a Certification"):
         SYSTEM.simulate(PULSE, certify=given)
 
@@ -310,12 +310,12 @@ def test_what_is_no_certification_is_refused(given):
         ({"runs": 10}, ComponentError, "runs must be a whole number from 60 to 100000, got 10"),
     ],
 )
-def test_certifications_that_are_refused(arguments, error, words):
+def test_invalid_certification_settings_are_refused(arguments, error, words):
     with pytest.raises(error, match=words):
         rf.Certification(**arguments)
 
 
-def test_a_part_with_a_scaled_parameter():
+def test_with_scaled_scales_one_parameter():
     pads = PADS.with_scaled("damping_ratio", 2.0)
     assert pads == rf.TwoSpringSupport(frequency_ratio=20, damping_ratio=0.20)
     wide = rf.CushionCap(height="0.5 m", mass="10 t").with_scaled("mass", 0.5)
@@ -338,7 +338,7 @@ MOTIONS = {
 
 @pytest.mark.parametrize("name", MOTIONS)
 @pytest.mark.parametrize("parts", DIVISIONS)
-def test_a_motion_cut_finer_is_the_same_function_of_time(name, parts):
+def test_divided_motion_is_the_same_function_of_time(name, parts):
     motion = MOTIONS[name]
     finer = divide_intervals(motion, parts)
     time = np.linspace(0.0, motion.si.duration, 997)
@@ -352,7 +352,7 @@ def test_a_motion_cut_finer_is_the_same_function_of_time(name, parts):
 
 
 @pytest.mark.parametrize("accuracy", ["fast", "standard", "reference", rf.Accuracy(substeps=3)])
-def test_shorter_steps_are_shorter(accuracy):
+def test_shorter_step_settings_take_more_steps(accuracy):
     run = SYSTEM.simulate(PULSE, free_vibration="4 s", accuracy=accuracy)
     step = run.attrs["solver_end_time"] / run.attrs["solver_steps"]
     settings = with_shorter_steps(accuracy_of(accuracy), SYSTEM.assembly, step, PULSE.si.time_step)
@@ -360,7 +360,7 @@ def test_shorter_steps_are_shorter(accuracy):
     assert finer.attrs["solver_steps"] > 2.0 * run.attrs["solver_steps"]
 
 
-def test_a_verdict_is_settled_only_if_all_that_it_hangs_on_is():
+def test_verdict_is_confirmed_only_if_all_clearances_agree():
     """Of a body that overturns: its rate at that angle, and the time that was left."""
     falls = RunSummary(overturned=True, peak=0.2, clearances=(1.0, 0.5), time=4.0, direction=1)
     for clearances, sure in (
@@ -374,7 +374,7 @@ def test_a_verdict_is_settled_only_if_all_that_it_hangs_on_is():
 
 
 @pytest.mark.parametrize("sign", [-1.0, 1.0])
-def test_of_flips_to_both_sides_the_nearest_is_told(sign):
+def test_scan_reports_the_nearest_flip_of_both_sides(sign):
     """Both lie between the same changes of the first row."""
     near, far = 0.12, 0.17
 
@@ -392,7 +392,7 @@ def test_of_flips_to_both_sides_the_nearest_is_told(sign):
     assert found.margin == pytest.approx(near, rel=2.0 * RESOLUTION)
 
 
-def test_changes_at_the_reach_itself_were_tried():
+def test_changes_at_the_reach_are_counted_as_tried():
     base = RunSummary(overturned=False, peak=0.1, clearances=(0.9,))
     found = scan(lambda _: base, base, [0.1, 0.2], most=100, resolution=0.5)
     assert found.margin == 0.2
@@ -400,7 +400,7 @@ def test_changes_at_the_reach_itself_were_tried():
     assert found.within(0.1) == sum(abs(change) < 0.11 for change in found.tried)
 
 
-def test_the_page_says_what_is_done():
+def test_documentation_matches_certification_constants():
     page = "guide/tradeoff.md"
     assert said(page, "at most `rf.Certification(runs=...)`, # unless given") == [200]
     assert said(page, "steps # times shorter than they were on average") == [SHORTER]

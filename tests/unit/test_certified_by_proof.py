@@ -26,7 +26,7 @@ def pulse(peak):
 
 
 @pytest.mark.parametrize(("peak", "falls"), [(3.0, False), (3.6, True)])
-def test_the_proof_stands_beside_the_verdict(system, peak, falls):
+def test_proof_agrees_with_the_verdict(system, peak, falls):
     run = system.simulate(pulse(peak), free_vibration="10 s", certify="proved", outputs=None)
     assert bool(run.verdict_proved)
     assert bool(run.overturned) is falls
@@ -41,14 +41,14 @@ def test_the_proof_stands_beside_the_verdict(system, peak, falls):
     assert "verdict_margin" not in run
 
 
-def test_a_run_that_ends_too_early_is_told(system):
+def test_run_ending_before_proved_overturning_warns(system):
     with pytest.warns(SolverWarning, match="after the end of the run"):
         run = system.simulate(pulse(3.6), certify="proved", outputs=None)
     assert bool(run.verdict_proved)
     assert not bool(run.overturned)
 
 
-def test_a_contradiction_is_told_loudly(system, monkeypatch):
+def test_contradiction_of_run_and_proof_warns(system, monkeypatch):
     given = proving.prove_run
 
     def wrong(*arguments, **options):
@@ -70,7 +70,7 @@ def test_a_contradiction_is_told_loudly(system, monkeypatch):
         pytest.param(PADS, 4.5, 0.3, marks=pytest.mark.long),
     ],
 )
-def test_another_instant_of_overturning_is_told(base, peak, away, monkeypatch):
+def test_different_overturning_time_warns(base, peak, away, monkeypatch):
     """The verdict is proved, but the run is of another course."""
     given = proving.prove_run
 
@@ -88,14 +88,14 @@ def test_another_instant_of_overturning_is_told(base, peak, away, monkeypatch):
 
 @pytest.mark.filterwarnings("error")
 @pytest.mark.parametrize("accuracy", ["fast", "standard", "reference"])
-def test_an_instant_of_overturning_a_little_off_is_no_contradiction(system, accuracy):
+def test_small_difference_of_overturning_time_does_not_warn(system, accuracy):
     run = system.simulate(
         pulse(3.6), free_vibration="10 s", certify="proved", outputs=None, accuracy=accuracy
     )
     assert bool(run.verdict_proved)
 
 
-def test_what_cannot_be_proved_is_refused_before_the_run(system):
+def test_unprovable_scenes_are_refused_before_the_run(system):
     with pytest.raises(ComponentError, match="simulate: proofs are of reaching"):
         system.simulate(pulse(3.0), certify="proved", overturning="continue")
     wall = rf.System(
@@ -112,7 +112,7 @@ def test_what_cannot_be_proved_is_refused_before_the_run(system):
         rf.prove_critical_scale(pulse(3.0))
 
 
-def test_the_report_and_the_command_say_it(system, tmp_path, capsys):
+def test_report_and_command_state_the_proof(system, tmp_path, capsys):
     from rockframe.command.main import main
 
     run = system.simulate(pulse(3.0), certify="proved")
@@ -139,7 +139,7 @@ def test_the_sentence_encloses_the_time_of_overturning(system):
 
 
 @pytest.mark.parametrize("base", [rf.RigidGround(), pytest.param(PADS, marks=pytest.mark.long)])
-def test_the_sentence_says_what_is_between_the_samples(base):
+def test_proof_sentence_states_the_interpolation_of_samples(base):
     standing = rf.System(rf.Block(width="1 m", height="5 m", mass="10 t"), base)
     assert "this record, joined by straight lines" in str(rf.prove(standing, pulse(1.0)))
     assert "this record times 0.3, joined" in str(rf.prove(standing, pulse(1.0), scale=0.3))
@@ -148,7 +148,7 @@ def test_the_sentence_says_what_is_between_the_samples(base):
 
 
 @pytest.mark.parametrize("base", [rf.RigidGround(), PADS])
-def test_the_sentence_names_gravity_and_the_start(base):
+def test_proof_sentence_states_gravity_and_initial_state(base):
     block = rf.Block(width="1 m", height="5 m", mass="10 t")
     standing = rf.System(block, base, gravity="9.81 m/s^2")
     words = "for the numbers of this block, gravity 9.81 m s^-2, "

@@ -20,7 +20,7 @@ def spectrum(damping_ratio=0.08, acceleration=0.3):
     )
 
 
-def test_the_worked_numbers_of_a_wall_of_six_metres():
+def test_circolare_reproduces_worked_example_of_a_wall():
     check = rf.codes.circolare_2019(LOW, spectrum(), confidence_factor=1)
     worked = {
         "alpha_0": 0.0833333, "e*": 1.0, "d_0": 0.25, "a_0*": 0.8175, "d_SLV": 0.10,
@@ -42,7 +42,7 @@ def test_the_worked_numbers_of_a_wall_of_six_metres():
     assert sources["T_SLC"] == "C8.7.1.11"
 
 
-def test_damage_begins_as_the_mechanism_is_activated():
+def test_damage_limit_state_compares_activation_acceleration():
     for acceleration, stands in ((0.8, True), (0.83, False)):
         check = rf.codes.circolare_2019(
             LOW, spectrum(0.05, acceleration), confidence_factor=1, limit_state="SLD",
@@ -55,7 +55,7 @@ def test_damage_begins_as_the_mechanism_is_activated():
     assert motions.value("S_e(T_0)") == pytest.approx(float(found.mean()))
 
 
-def test_overburden():
+def test_circolare_includes_overburden_mass():
     """By hand: a floor of 2 t at the top, 0.1 m from the face to which the wall falls."""
     floor = rf.Load(at=("-0.15 m", "6 m"), moving_mass="2 t")
     system = rf.System(WALL, rf.RigidGround(), floor, gravity="9.81 m/s^2")
@@ -70,7 +70,7 @@ def test_overburden():
         )
 
 
-def test_the_side_that_falls():
+def test_circolare_considers_the_weaker_or_free_side():
     eccentric = WALL.replace(eccentricity="0.05 m")
     free = rf.codes.circolare_2019(rf.System(eccentric), spectrum())
     assert free.value("d_0") == pytest.approx(0.2)  # the weaker side, to the right
@@ -78,7 +78,7 @@ def test_the_side_that_falls():
     assert rf.codes.circolare_2019(before, spectrum()).value("d_0") == pytest.approx(0.3)
 
 
-def test_the_motion_beside_the_kinematics():
+def test_circolare_with_motions_matches_simulated_displacements():
     check = rf.codes.circolare_2019(rf.System(WALL), PULSES)
     moved = []
     for label, pulse in PULSES.items():
@@ -106,7 +106,7 @@ def test_the_motion_beside_the_kinematics():
     assert gentle.value("d_demand") == pytest.approx(float(displacement.max()), rel=1e-9)
 
 
-def test_a_motion_to_the_stronger_side_counts_in_full():
+def test_displacement_to_the_stronger_side_is_not_capped():
     """It was counted as d_0 of the weaker side at most, within which the wall was said to be."""
     eccentric = WALL.replace(eccentricity="0.15 m")
     system = rf.System(eccentric, rf.RigidGround(restitution=0.05))
@@ -135,12 +135,12 @@ def test_a_motion_to_the_stronger_side_counts_in_full():
         ),
     ],
 )
-def test_what_cannot_be_checked_is_refused(given, words):
+def test_scenes_that_cannot_be_checked_are_refused(given, words):
     with pytest.raises(ComponentError, match=words):
         rf.codes.circolare_2019(*given)
 
 
-def test_faults_of_arguments():
+def test_invalid_check_arguments_are_refused():
     with pytest.raises(ComponentError, match="'SLV', 'SLC', 'SLD', got 'SLO'"):
         rf.codes.circolare_2019(LOW, spectrum(), limit_state="SLO")
     with pytest.raises(ComponentError, match="elastic_period goes with limit_state='SLD'"):
@@ -151,7 +151,7 @@ def test_faults_of_arguments():
         rf.codes.circolare_2019(LOW, spectrum()).value("T_SLD")
 
 
-def test_a_component_on_its_floor():
+def test_asce_check_of_a_component_matches_formulas():
     given = {"spectral_acceleration": 1.2, "importance": 1.5, "height_factor": 2.5}
     factors = {"ductility_factor": 1.3, "resonance_factor": 1.4, "strength_factor": 1.5}
     check = rf.codes.asce_7_22(CABINET, PULSES, **given, **factors, friction=0.6)
@@ -186,7 +186,7 @@ def test_a_component_on_its_floor():
     assert enough.passed == {"tipping": True, "sliding": True}
 
 
-def test_a_component_that_a_floor_overturns_is_told():
+def test_asce_check_reports_overturning_under_floor_motion():
     floor = rf.GroundMotion.sine_pulse("9 m/s^2", "0.5 Hz")
     check = rf.codes.asce_7_22(CABINET, floor, spectral_acceleration=1.0)
     assert not check.passed["motion"]
@@ -194,7 +194,7 @@ def test_a_component_that_a_floor_overturns_is_told():
     assert "overturned" in [line.words for line in check.lines["Motion on the floor"]]
 
 
-def test_anchors_of_a_component_that_the_vertical_force_lifts_carry_that_too():
+def test_anchors_carry_net_uplift_of_the_vertical_force():
     check = rf.codes.asce_7_22(CABINET, spectral_acceleration=5.0)
     values = {name: check.value(name) for name in ("M_OT", "W_p", "F_v", "M_R, with F_v")}
     net = 0.9 * values["W_p"] - values["F_v"]
@@ -210,7 +210,7 @@ def test_a_component_before_a_wall_tips_away_from_it(side, arm):
     assert check.value("M_R") == pytest.approx(0.9 * check.value("W_p") * arm, rel=1e-12)
 
 
-def test_the_friction_of_a_ground_is_used_and_a_block_that_slides_is_no_mechanism():
+def test_checks_use_ground_friction_and_refuse_sliding_blocks():
     tiles = rf.System(CABINET, rf.RigidGround(friction=0.3))
     check = rf.codes.asce_7_22(tiles, spectral_acceleration=1.2)
     assert check.passed == {"tipping": False, "sliding": False}
@@ -221,7 +221,7 @@ def test_the_friction_of_a_ground_is_used_and_a_block_that_slides_is_no_mechanis
     assert rf.codes.circolare_2019(held, spectrum()).value("alpha_0") == pytest.approx(1 / 3)
 
 
-def test_texts_and_pages(tmp_path):
+def test_check_text_and_report_contain_sources(tmp_path):
     check = rf.codes.circolare_2019(LOW, PULSES)
     text = str(check)
     for words in ("T_SLV", "C8.7.1.10", "C8.7.1.2.1.9", "d, 0.3 m/s", "Left out: interlocking"):

@@ -74,13 +74,13 @@ class TestEveryComponent:
             component.si.restitution = 0.1
         assert repr(component) == before
 
-    def test_what_it_gives_away_does_not_lead_back_in(self, component):
+    def test_to_dict_result_is_independent(self, component):
         description = component.to_dict()
         description.clear()
         assert component == copy.deepcopy(component)
         assert component.to_dict()["type"] == type(component).__name__
 
-    def test_it_equals_its_like_and_nothing_else(self, name, component):
+    def test_equals_only_identical_components(self, name, component):
         assert component == examples()[name]
         assert hash(component) == hash(examples()[name])
         others = [other for key, other in EXAMPLES.items() if key != name]
@@ -103,7 +103,7 @@ class TestEveryComponent:
         assert copy.copy(component) == component
         assert copy.deepcopy(component).si == component.si
 
-    def test_it_survives_the_way_through_text_bit_for_bit(self, component):
+    def test_survives_json_round_trip_exactly(self, component):
         description = component.to_dict()
         assert all(isinstance(value, str | float) for value in description.values())
         text = json.dumps(description, allow_nan=False)
@@ -112,7 +112,7 @@ class TestEveryComponent:
         assert again.si == component.si
         assert json.dumps(again.to_dict()) == text
 
-    def test_it_is_not_made_of_what_describes_another(self, component):
+    def test_from_dict_refuses_another_type(self, component):
         kind = type(component)
         assert kind.from_dict(component.to_dict()) == component
         other = {**component.to_dict(), "type": "Cupboard"}
@@ -120,11 +120,11 @@ class TestEveryComponent:
         with pytest.raises(ComponentError, match=words):
             kind.from_dict(other)
 
-    def test_its_repr_builds_it_again(self, component):
+    def test_repr_evaluates_to_an_equal_component(self, component):
         space = {kind.__name__: kind for kind in (type(component),)}
         assert eval(repr(component), space) == component  # noqa: S307
 
-    def test_it_says_what_it_is_for(self, component):
+    def test_has_noun_and_docstring(self, component):
         assert component.noun
         assert type(component).__doc__
 
@@ -151,7 +151,7 @@ GIVEN = (
 )  # fmt: skip
 
 
-def test_every_kind_of_component_is_among_those_that_are_looked_at():
+def test_every_component_class_is_tested():
     own = {
         kind
         for kind in registered_classes().values()
@@ -161,7 +161,7 @@ def test_every_kind_of_component_is_among_those_that_are_looked_at():
 
 
 @pytest.mark.parametrize("given", GIVEN, ids=lambda one: type(one).__name__)
-def test_a_component_takes_back_what_it_gives(given):
+def test_replace_accepts_own_property_values(given):
     for name in inspect.signature(type(given)).parameters:
         value = getattr(given, name)
         if value is not None:
@@ -180,7 +180,7 @@ _ratio = st.floats(1e-3, 1e3)
 
 @given(_size, st.floats(1.01, 100.0), st.floats(1e-6, 1e12), st.none() | st.floats(3.0, 4.0))
 @settings(max_examples=200, deadline=None)
-def test_a_block_is_kept_bit_for_bit(width, slenderness, mass, shape_factor):
+def test_block_survives_json_round_trip_exactly(width, slenderness, mass, shape_factor):
     height = width * slenderness
     block = rf.Block(
         width=f"{width!r} m", height=f"{height!r} m", mass=f"{mass!r} kg", shape_factor=shape_factor
@@ -194,7 +194,7 @@ def test_a_block_is_kept_bit_for_bit(width, slenderness, mass, shape_factor):
 @overdamped
 @given(_ratio, _ratio, st.none() | st.floats(1e-9, 1.0))
 @settings(max_examples=100, deadline=None)
-def test_pads_are_kept_bit_for_bit(first, second, restitution):
+def test_pads_survive_json_round_trip_exactly(first, second, restitution):
     for pads in (
         rf.TwoSpringSupport(frequency_ratio=first, damping_ratio=second, restitution=restitution),
         rf.TwoSpringSupport(
@@ -212,7 +212,7 @@ def test_pads_are_kept_bit_for_bit(first, second, restitution):
     st.none() | st.floats(-1e3, 1e3),
 )
 @settings(max_examples=100, deadline=None)
-def test_an_initial_state_is_kept_bit_for_bit(rotation, rate, height):
+def test_initial_state_survives_json_round_trip_exactly(rotation, rate, height):
     state = rf.InitialState(
         rotation=None if rotation is None else f"{rotation!r} rad",
         angular_velocity=None if rate is None else f"{rate!r} rad/s",
@@ -233,7 +233,7 @@ def test_an_initial_state_is_kept_bit_for_bit(rotation, rate, height):
         {"type": ["Block"]},
     ],
 )
-def test_a_description_of_nothing_known_is_refused(description):
+def test_unknown_component_description_is_refused(description):
     with pytest.raises(RockframeError):
         component_from_dict(description)
 
@@ -263,7 +263,7 @@ def test_properties_are_quantities_with_units():
     assert block.maximum_restitution == pytest.approx(1.0 - 1.5 / 17.0, rel=1e-15)
 
 
-def test_all_arguments_are_by_keyword_and_none_is_forgotten():
+def test_arguments_are_keyword_only_and_required():
     with pytest.raises(TypeError):
         rf.Block("2 m", "8 m", "50 t")
     for name in SIZE:
@@ -275,7 +275,7 @@ def test_all_arguments_are_by_keyword_and_none_is_forgotten():
 
 @given(st.floats(0.5, 20.0), st.floats(0.75, 10.0))
 @settings(max_examples=100, deadline=None)
-def test_shape_factor_and_inertia_say_the_same(width, slenderness):
+def test_shape_factor_and_inertia_are_equivalent(width, slenderness):
     size = {"width": f"{width!r} m", "height": f"{width * slenderness!r} m", "mass": "50 t"}
     by_factor = rf.Block(**size, shape_factor=2.9)
     by_inertia = rf.Block(**size, inertia=by_factor.inertia)
@@ -287,7 +287,7 @@ def test_shape_factor_and_inertia_say_the_same(width, slenderness):
     )
 
 
-def test_shape_factor_and_inertia_exclude_one_another():
+def test_shape_factor_and_inertia_are_mutually_exclusive():
     with pytest.raises(ComponentError, match="shape_factor or inertia, not both"):
         rf.Block(**SIZE, shape_factor=3, inertia="3e5 kg*m^2")
 
@@ -308,7 +308,7 @@ def test_a_shape_factor_must_be_a_positive_number(bad):
         ({"inertia": "1161 kg*m^2", "eccentricity": "0.3 m"}, "1.078 or more", "1160 kg*m^2"),
     ],
 )
-def test_an_inertia_that_no_body_of_the_size_has_is_warned_about_and_used(told, least, possible):
+def test_unphysical_inertia_warns_and_is_used(told, least, possible):
     size = {"width": "1 m", "height": "2 m", "mass": "1 t"}
     with pytest.warns(ModelWarning, match=rf"Block: .*not physical.*{least}") as caught:
         block = rf.Block(**size, **told)
@@ -320,7 +320,7 @@ def test_an_inertia_that_no_body_of_the_size_has_is_warned_about_and_used(told, 
     rf.Block(**size, **told | {name: possible})
 
 
-def test_an_inertia_about_a_corner_is_told_as_such():
+def test_inertia_about_a_corner_warns():
     size = {"width": "1 m", "height": "2 m", "mass": "1 t"}
     beside = {"centre_height": "0.9 m", "eccentricity": "0.1 m"}
     for told in (
@@ -346,7 +346,7 @@ DRUM = rf.Block.cylinder(diameter="0.5 m", height="2 m", mass="400 kg")
         ({"height": "3 m", "shape_factor": 3.02}, "mass: centre_height, 1 m; give centre_height"),
     ],
 )
-def test_a_block_whose_given_inertia_is_left_at_another_size_is_warned_about(changes, words):
+def test_resizing_with_explicit_inertia_warns(changes, words):
     with pytest.warns(ModelWarning, match=f"Block.replace: .*{words}") as caught:
         changed = DRUM.replace(**changes)
     assert len(caught) == 1
@@ -355,7 +355,7 @@ def test_a_block_whose_given_inertia_is_left_at_another_size_is_warned_about(cha
     assert changed == rf.Block.from_dict(DRUM.to_dict() | changes | gone)
 
 
-def test_a_block_that_is_told_its_inertia_again_or_scales_is_not_warned_about():
+def test_resizing_with_new_or_scaled_inertia_does_not_warn():
     assert DRUM.replace(mass="1 t", inertia=DRUM.inertia).inertia == DRUM.inertia
     scaling = DRUM.replace(shape_factor=DRUM.shape_factor)
     for mass in (400.0, 1000.0):
@@ -389,7 +389,7 @@ def test_a_squat_block_is_refused_exactly_below_the_limit():
 
 @given(st.floats(0.05, 50.0), st.floats(0.05, 50.0))
 @settings(max_examples=200, deadline=None)
-def test_a_block_is_refused_where_its_greatest_restitution_is_not_positive(slenderness, mu):
+def test_block_without_positive_maximum_restitution_is_refused(slenderness, mu):
     theta = math.atan(1.0 / slenderness)
     greatest = (1.0 + mu * math.cos(2.0 * theta)) / (1.0 + mu)
     size = {"width": "1 m", "height": f"{slenderness!r} m", "mass": "1 t", "shape_factor": mu}
@@ -400,7 +400,7 @@ def test_a_block_is_refused_where_its_greatest_restitution_is_not_positive(slend
             rf.System(block)
 
 
-def test_from_density_multiplies():
+def test_from_density_computes_mass():
     block = rf.Block.from_density(
         width="2 m", height="8 m", depth="150 cm", density="2.5 t/m^3", shape_factor=2.9
     )
@@ -414,7 +414,7 @@ def test_from_density_multiplies():
             rf.Block.from_density(**{**size, name: "0 " + size[name].split()[1]})
 
 
-def test_a_slenderness_leaves_the_radius_and_a_radius_the_slenderness():
+def test_slenderness_and_radius_change_independently():
     size = {"width": "1 m", "height": "4 m", "mass": "1 t"}
     for block in (rf.Block(**size), rf.Block(**size, centre_height="1 m", eccentricity="5 cm")):
         radius, slenderness = block.si.radius, block.slenderness
@@ -430,7 +430,7 @@ def test_a_slenderness_leaves_the_radius_and_a_radius_the_slenderness():
 
 @given(st.floats(0.05, 100.0), st.floats(0.75, 20.0))
 @settings(max_examples=100, deadline=None)
-def test_from_size_gives_the_size_asked_for(radius, slenderness):
+def test_from_size_has_requested_radius_and_slenderness(radius, slenderness):
     block = rf.Block.from_size(radius=f"{radius!r} m", slenderness=slenderness, mass="50 t")
     assert block.radius.m_as("m") == pytest.approx(radius, rel=1e-14)
     assert block.slenderness == pytest.approx(slenderness, rel=1e-14)
@@ -439,7 +439,7 @@ def test_from_size_gives_the_size_asked_for(radius, slenderness):
     assert block.frequency.m_as("rad/s") == pytest.approx(expected, rel=1e-14)
 
 
-def test_from_size_refuses_what_it_cannot_use():
+def test_from_size_refuses_invalid_arguments():
     size = {"radius": "5 m", "slenderness": 4, "mass": "50 t"}
     for name, bad, error in (
         ("radius", 5, UnitsError),
@@ -456,7 +456,7 @@ def test_from_size_refuses_what_it_cannot_use():
 
 
 @pytest.mark.parametrize("size", ["1e200 m", "1e-200 m", "5e-324 m", "1e308 m"])
-def test_absurd_sizes_are_refused_or_make_a_sound_block(size):
+def test_extreme_sizes_are_refused_or_give_finite_properties(size):
     try:
         block = rf.Block(width=size, height=size, mass="1 t")
     except ComponentError:
@@ -485,13 +485,13 @@ class TestRestitution:
             maker(bad)
 
     @pytest.mark.parametrize("good", [1e-300, 0.5, 1, "50 %"])
-    def test_inside_its_interval_is_taken(self, maker, good):
+    def test_inside_its_interval_is_accepted(self, maker, good):
         assert 0.0 < maker(good).restitution <= 1.0
 
-    def test_unless_given_it_is_left_to_the_block(self, maker):
+    def test_restitution_defaults_to_none(self, maker):
         assert maker(None).restitution is None
 
-    def test_above_the_greatest_is_warned_about(self, maker):
+    def test_above_the_maximum_warns(self, maker):
         block = rf.Block(**SIZE)
         greatest = block.maximum_restitution
         with pytest.warns(ModelWarning, match="eps_max") as caught:
@@ -504,7 +504,7 @@ class TestRestitution:
         rf.System(block, maker(None))
 
 
-def test_each_pair_of_the_pads_needs_exactly_one_member():
+def test_pads_need_exactly_one_parameter_of_each_pair():
     first = {"frequency_ratio": 20, "stiffness": "12 MN/m"}
     second = {"damping_ratio": 0.1, "damping": "80 kN*s/m"}
     names = list(itertools.chain(first, second))
@@ -533,7 +533,7 @@ def test_an_initial_rotation_of_a_right_angle_is_refused(bad):
         rf.InitialState(rotation=bad)
 
 
-def test_an_initial_state_is_at_rest_unless_told_otherwise():
+def test_initial_state_defaults_to_rest():
     state = rf.InitialState()
     assert state.si.angular_velocity == state.si.vertical_velocity == 0.0
     assert state.si.rotation is None
@@ -544,13 +544,13 @@ def test_an_initial_state_is_at_rest_unless_told_otherwise():
 class TestCentreOfMass:
     SIZE: ClassVar = {"width": "0.6 m", "height": "2 m", "mass": "400 kg"}
 
-    def test_it_is_in_the_middle_unless_told(self):
+    def test_defaults_to_the_middle(self):
         block = rf.Block(**self.SIZE)
         told = rf.Block(**self.SIZE, centre_of_mass=("1 m", "0 m"))
         assert vars(told.si) == vars(block.si)
         assert [each.m_as("m") for each in block.centre_of_mass] == [1.0, 0.0]
 
-    def test_angles_and_restitutions_differ_to_both_sides(self):
+    def test_eccentric_block_has_different_angles_and_restitutions(self):
         """Angular momentum about the corner that lands, :eq:`eq-eccentric-impact`."""
         block = rf.Block(**self.SIZE, inertia="150 kg*m^2", centre_of_mass=("0.7 m", "0.05 m"))
         body = rf.System(block).setting.body
@@ -565,7 +565,7 @@ class TestCentreOfMass:
         assert block.maximum_restitution == pytest.approx(min(expected), rel=1e-14)
         assert block.inertia.m_as("kg*m^2") == pytest.approx(150.0, rel=1e-14)
 
-    def test_without_an_inertia_that_of_the_rectangle_is_taken(self):
+    def test_inertia_defaults_to_that_of_the_rectangle(self):
         block = rf.Block(**self.SIZE, centre_of_mass=("0.7 m", "0.05 m"))
         assert block.inertia.m_as("kg*m^2") == pytest.approx(400.0 * (0.6**2 + 4.0) / 12.0)
 
@@ -585,11 +585,11 @@ class TestCentreOfMass:
             ({"centre_of_mass": ("1 m", "0 m"), "eccentricity": "0 m"}, "give it alone"),
         ],
     )
-    def test_what_is_no_place_of_it_is_refused(self, given, words):
+    def test_invalid_positions_are_refused(self, given, words):
         with pytest.raises(ComponentError, match=words):
             rf.Block(**self.SIZE, **given)
 
-    def test_a_lean_beyond_a_tenth_of_the_overturning_angle_is_warned_of(self):
+    def test_large_lean_at_rest_warns(self):
         block = rf.Block(**self.SIZE, centre_of_mass=("1 m", "0.1 m"))
         with pytest.warns(ModelWarning, match="at rest the body leans by"):
             rf.System(block, rf.WinklerSoil(stiffness="1 MPa", damping_ratio=0.1))

@@ -68,7 +68,7 @@ def switched(left, right, guard, state):
 
 
 @pytest.mark.parametrize("contact", [LEAVING, ENGAGING])
-def test_what_waits_beside_a_corner_that_leaves_is_judged_by_its_force(contact):
+def test_leaving_corner_reclassifies_the_waiting_corner_by_force(contact):
     """The block flies: nothing is held, and nothing of its own re-pinning is left to wait for."""
     new = switched(contact, TOUCHING, RIGHT_GUARDS + LEAVE, state_with(right_force=0.0))
     left, right = corners_in(new)
@@ -76,18 +76,18 @@ def test_what_waits_beside_a_corner_that_leaves_is_judged_by_its_force(contact):
     assert SYSTEM.part.flies(SYSTEM.part.mode_of(new).contact) or right == TOUCHING
 
 
-def test_a_silent_event_of_one_corner_leaves_the_other_as_it_is():
+def test_event_at_one_corner_does_not_change_the_other():
     new = switched(LEAVING, ENGAGING, RIGHT_GUARDS + REENGAGE, state_with(right_force=G))
     assert corners_in(new) == (LEAVING, TOUCHING)
     assert pivot_in(new) == PIVOT_RIGHT
 
 
-def test_a_leaving_corner_that_its_pad_lets_go_is_relaxing():
+def test_leaving_corner_released_by_its_pad_is_relaxing():
     new = switched(LEAVING, TOUCHING, LEFT_GUARDS + REENGAGE, state_with(right_force=G))
     assert corners_in(new) == (RELAXING, TOUCHING)
 
 
-def test_a_jolt_of_the_ground_makes_a_leaving_corner_relax():
+def test_ground_disturbance_relaxes_a_leaving_corner():
     state = state_with(right_force=G)
     new = mode_after_disturbance(SYSTEM, SYSTEM.part, 0, mode_of(LEAVING, TOUCHING), state)
     assert corners_in(new) == (RELAXING, TOUCHING)

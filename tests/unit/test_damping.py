@@ -11,7 +11,7 @@ from rockframe.errors import ModelWarning
 pytestmark = pytest.mark.unit
 
 
-def test_a_warning_points_at_the_line_of_the_user():
+def test_damping_warning_points_at_the_calling_line():
     with warnings.catch_warnings(record=True) as caught:
         warnings.simplefilter("always")
         rf.TwoSpringSupport(frequency_ratio=20, damping_ratio=10)
@@ -19,7 +19,7 @@ def test_a_warning_points_at_the_line_of_the_user():
     assert [one.filename for one in caught] == [__file__] * 2
 
 
-def test_a_damping_ratio_of_ten_may_mean_ten_per_cent():
+def test_damping_ratio_above_one_warns():
     words = r"TwoSpringSupport: damping_ratio = 10 is 1000 % of critical; was '10 %' meant\?"
     with pytest.warns(ModelWarning, match=words):
         pads = rf.TwoSpringSupport(frequency_ratio=20, damping_ratio=10)
@@ -31,7 +31,7 @@ def test_a_damping_ratio_of_ten_may_mean_ten_per_cent():
     assert pickle.loads(pickle.dumps(pads)) == pads  # noqa: S301
 
 
-def test_the_dashpots_of_a_bed_are_those_of_its_ratio():
+def test_soil_damping_follows_from_its_ratio():
     """c0 over the base is 2 xi sqrt(k m), of the vertical motion of all that stands on it."""
     block = rf.Block(width="4 m", height="10 m", mass="100 t")
     cap = rf.CushionCap(width="5 m", height="1 m", mass="60 t")

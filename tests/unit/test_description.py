@@ -16,7 +16,7 @@ pytestmark = pytest.mark.unit
 
 
 class TestDescription:
-    def test_of_two_springs(self):
+    def test_describes_two_springs(self):
         text = rf.System(block(), pads(restitution=0.8)).describe()
         theta = math.atan(0.25)
         radius = math.sqrt(17.0)
@@ -52,7 +52,7 @@ class TestDescription:
         assert states == ["full", "left", "right", "flight", "impact"]
 
     @pytest.mark.parametrize("base", [pads, soil])
-    def test_rocking_damps_by_both_sides_of_an_eccentric_base(self, base):
+    def test_rocking_damping_ratio_of_an_eccentric_base(self, base):
         """Springs and dashpots have the same levers, about the foot of the centre of mass."""
         part, e = base(), 0.1
         eccentric = block(centre_of_mass=("4 m", f"{e} m"))
@@ -71,7 +71,7 @@ class TestDescription:
         told = re.search(r"omega_r = (\S+) rad/s .*?damping ratio (\S+)", text, re.DOTALL)
         assert told.groups() == (f"{rate:.6g}", f"{ratio:.6g}")
 
-    def test_of_rigid_ground(self):
+    def test_describes_rigid_ground(self):
         text = rf.System(block()).describe()
         for word in (
             "Model: rigid ground",
@@ -86,7 +86,7 @@ class TestDescription:
             assert word in text, word
 
     @pytest.mark.parametrize("capped", [False, True])
-    def test_of_soil(self, capped):
+    def test_describes_soil(self, capped):
         parts = (block(), soil(), cap()) if capped else (block(), soil())
         text = rf.System(*parts).describe()
         mass, half, centre = 5e4, 1.0, 4.0
@@ -125,7 +125,7 @@ class TestDescription:
         states = re.findall(r"^  (full|left, right|flight|contact) ", text, re.MULTILINE)
         assert states == ["full", "left, right", "flight", "contact"]
 
-    def test_of_a_stack(self):
+    def test_describes_a_block_and_cap_stack(self):
         coupled = rf.System(block(), pads(), cap(), soil()).describe()
         cascade = rf.System(block(), pads(), cap(), soil(), coupling="cascade").describe()
         omega = math.sqrt(0.75 * 9.80665 / math.sqrt(17.0))
@@ -164,7 +164,7 @@ class TestDescription:
         assert f"{rule}:" in text
         assert not any(f"{other}:" in text for other in others)
 
-    def test_of_soil_says_where_it_lets_go(self):
+    def test_soil_description_states_the_separation_rule(self):
         texts = {
             separation: rf.System(block(), soil(separation=separation)).describe()
             for separation in ("displacement", "pressure")
@@ -173,7 +173,7 @@ class TestDescription:
         assert "dashpots would pull" not in texts["displacement"]
         assert "dashpots would pull" in texts["pressure"]
 
-    def test_of_soil_too_soft_says_never(self):
+    def test_soil_too_soft_to_uplift_says_never(self):
         with pytest.warns(ModelWarning, match="too soft") as caught:
             system = rf.System(block(), soil(stiffness="0.2 MPa"))
         assert caught[0].filename == __file__
@@ -196,14 +196,14 @@ class TestDescription:
             if len(parts) < 3 and "Winkler" not in name:  # Eq. (18) is named as that of small ones
                 assert "small rotation" not in assembled(name).describe()
 
-    def test_says_under_what_gravity(self):
+    def test_states_gravity(self):
         moon = rf.System(block(), pads(), gravity="1.62 m/s^2").describe()
         omega = math.sqrt(0.75 * 1.62 / math.sqrt(17.0))
         assert f"{omega:.6g} rad/s" in moon
         assert "1.62" in moon
 
     @pytest.mark.parametrize("coupling", ["coupled", "cascade"])
-    def test_of_a_stack_says_whose_uplift_angle_is_whose(self, coupling):
+    def test_stack_description_assigns_uplift_angles(self, coupling):
         parts = (block(), pads(), cap(), soil())
         system = rf.System(*parts, coupling=coupling)
         rest = system.equilibrium()
@@ -221,7 +221,7 @@ class TestDescription:
             soft = rf.System(block(), pads(), cap(), soil(stiffness="0.1 MPa"), coupling=coupling)
         assert "arcsin(delta/b) never" in re.sub(r" +", " ", soft.describe())
 
-    def test_stands_in_two_columns(self):
+    def test_is_aligned_in_two_columns(self):
         for name in SCENES:
             lines = assembled(name).describe().splitlines()
             assert max(len(line) for line in lines) <= 100

@@ -20,7 +20,7 @@ BASES = {"rigid": (), "pads": (PADS,), "soil": (SOIL,)}
 
 
 @pytest.mark.parametrize("base", list(BASES))
-def test_a_wall_far_away_makes_no_difference(base):
+def test_distant_wall_has_no_effect(base):
     plan = {"free_vibration": "0.5 s"}
     far = rf.RearWall(stiffness="2 MN/m", damping="20 kN*s/m", gap="100 m")
     with_wall = rf.System(BLOCK, *BASES[base], far).simulate(PULSE, **plan)
@@ -33,7 +33,7 @@ def test_a_wall_far_away_makes_no_difference(base):
 @pytest.mark.parametrize(
     ("base", "accuracy", "most"), [("pads", "reference", 1e-8), ("soil", "standard", 1e-5)]
 )
-def test_a_wall_holds_back_and_keeps_the_balance(base, accuracy, most):
+def test_wall_limits_rotation_and_preserves_energy_balance(base, accuracy, most):
     wall = rf.RearWall(side="left", stiffness="2 MN/m", damping="10 kN*s/m", gap="5 mm")
     plan = {"free_vibration": "0.2 s", "outputs": ("energy",), "accuracy": accuracy}
     run = rf.System(BLOCK, *BASES[base], wall).simulate(PULSE, **plan)
@@ -48,7 +48,7 @@ def test_a_wall_holds_back_and_keeps_the_balance(base, accuracy, most):
     assert float(other.peak_rotation) == pytest.approx(float(run.peak_rotation), rel=1e-9)
 
 
-def test_rocking_against_a_wall_is_that_of_the_equation():
+def test_rocking_against_a_wall_matches_reference_solution():
     """Housner's block whose upper left corner meets a spring at a gap."""
     b, h, mass, stiffness, gap, gravity = 0.5, 2.0, 4000.0, 4e5, 0.01, 9.80665
     radius, theta = math.hypot(b, h), math.atan2(b, h)
@@ -92,7 +92,7 @@ def test_rocking_against_a_wall_is_that_of_the_equation():
         ({"restitution": -0.6}, 0.6),
     ],
 )
-def test_the_wall_that_a_refusal_names_throws_back_as_the_stiff_one(given, share):
+def test_suggested_elastic_wall_has_the_rebound_of_the_rigid_wall(given, share):
     pads = rf.TwoSpringSupport(frequency_ratio=10, damping_ratio=0.05)
     stiff = rf.RearWall(**given)
     with pytest.raises(AssemblyError, match="takes no impulse") as refused:
@@ -108,7 +108,7 @@ def test_the_wall_that_a_refusal_names_throws_back_as_the_stiff_one(given, share
     assert peaks[1] / peaks[0] == pytest.approx(share, abs=5e-4)
 
 
-def test_a_wall_that_stops_the_body_has_critical_damping():
+def test_wall_with_zero_restitution_has_critical_damping():
     found = equivalent_wall(rf.RearWall(restitution=0), BLOCK.si)
     mass = (BLOCK.si.inertia + BLOCK.si.mass * BLOCK.si.centre_height**2) / BLOCK.si.height**2
     assert found.rebound == 0.0
@@ -122,12 +122,12 @@ def test_a_wall_that_stops_the_body_has_critical_damping():
         ({"stiffness": "1 MN/m", "restitution": -0.3}, "not both"),
     ],
 )
-def test_what_is_no_elastic_wall_is_refused(given, words):
+def test_invalid_elastic_wall_is_refused(given, words):
     with pytest.raises(ComponentError, match=words):
         rf.RearWall(**given)
 
 
-def test_an_elastic_wall_tells_itself_and_goes_to_plain_values_and_back():
+def test_elastic_wall_is_described_and_survives_dict_round_trip():
     wall = rf.RearWall(stiffness="1 MN/m", gap="1 cm", height="3 m")
     system = rf.System(BLOCK, PADS, wall)
     assert "acts while touched" in system.describe()
@@ -135,7 +135,7 @@ def test_an_elastic_wall_tells_itself_and_goes_to_plain_values_and_back():
     rf.plot.scene(system)
 
 
-def test_a_wall_behind_a_body_of_a_stack_is_drawn_beside_it():
+def test_wall_of_a_stack_body_is_drawn_at_that_body():
     plinth = rf.Block(width="2 m", height="1 m", mass="9 t")
     stack = rf.Stack(BLOCK, plinth, interfaces=[rf.RigidGround()], offsets=["10 cm"])
     wall = rf.RearWall(side="right", stiffness="1 MN/m", gap="5 cm")
@@ -156,14 +156,14 @@ def test_a_wall_that_misses_its_body_is_refused(given, words):
         rf.System(BLOCK, rf.RearWall(**given))
 
 
-def test_what_touches_the_top_of_a_body_stands_its_nudges():
+def test_wall_and_tendon_at_the_edge_allow_scaled_blocks():
     wall = rf.RearWall(stiffness="1 MN/m", height="4 m")
     tendon = rf.Tendon(stiffness="1 MN/m", at="0.5 m")
     for size in BLOCK.parameters():
         rf.System(BLOCK.with_scaled(size, 0.999), wall, tendon)
 
 
-def test_an_elastic_wall_names_no_law_of_impact():
+def test_elastic_wall_repr_omits_restitution():
     wall = rf.RearWall(stiffness="2 MN/m", gap="5 mm")
     assert "restitution" not in repr(wall)
     assert rf.RearWall.from_dict(wall.to_dict()) == wall

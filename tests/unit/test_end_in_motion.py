@@ -27,26 +27,26 @@ def rise():
     return 400.0 * 9.80665 * radius * (1.0 - math.cos(math.atan2(0.25, 1.0)))
 
 
-def test_on_rigid_ground_it_takes_the_rise_of_the_centre_of_mass():
+def test_overturning_energy_on_rigid_ground_is_the_rise_of_the_mass_centre():
     setting = rf.System(BLOCK).assembly.setting
     assert setting.overturning_energy == pytest.approx(rise(), rel=1e-12)
     assert stored_energy(setting, -setting.overturning_angle) == pytest.approx(rise())
 
 
 @pytest.mark.parametrize("parts", [[PADS], [SOIL], [PADS, CAP, SOIL]], ids=len)
-def test_bases_that_give_way_take_part_of_it_back(parts):
+def test_flexible_bases_reduce_the_overturning_energy(parts):
     setting = rf.System(BLOCK, *parts).assembly.setting
     assert 0.3 * rise() < setting.overturning_energy < rise()
 
 
-def test_of_two_sides_the_weaker_one_counts():
+def test_overturning_energy_is_that_of_the_weaker_side():
     leaning = rf.System(BLOCK, inclination="2 deg").assembly.setting
     radius, left, right = math.hypot(0.25, 1.0), *leaning.overturning_angles
     to_sides = [400.0 * 9.80665 * radius * (1.0 - math.cos(angle)) for angle in (left, right)]
     assert leaning.overturning_energy == pytest.approx(min(to_sides), rel=1e-9)
 
 
-def test_a_run_that_ends_in_mid_swing_warns():
+def test_run_ending_in_motion_warns():
     system = rf.System(BLOCK)
     with pytest.warns(SolverWarning, match=STILL_MOVING):
         short = system.simulate(PULSE)
@@ -57,7 +57,7 @@ def test_a_run_that_ends_in_mid_swing_warns():
     assert long.attrs["cautions"] == "none"
 
 
-def test_a_run_that_goes_on_and_ends_in_mid_fall_warns(monkeypatch):
+def test_continued_run_ending_in_mid_fall_warns(monkeypatch):
     monkeypatch.setattr(study, "COMPILING_SHARE", math.inf)  # lanes, whatever they take to compile
     system, strong = rf.System(BLOCK), PULSE.scaled(3.0)
     with pytest.warns(SolverWarning, match=STILL_MOVING):
@@ -72,7 +72,7 @@ def test_a_run_that_goes_on_and_ends_in_mid_fall_warns(monkeypatch):
     assert long.attrs["cautions"] == "none"
 
 
-def test_a_body_that_hangs_on_its_tie_beyond_the_angle_is_at_rest():
+def test_body_held_by_a_tie_beyond_overturning_does_not_warn():
     tie = rf.Restrainer(on=("0.25 m", "2 m"), to=("2 m", "2 m"), stiffness="500 kN/m",
                         slack="70 cm", strength="3 kN", brittle=False)  # fmt: skip
     system = rf.System(BLOCK, tie)
@@ -82,7 +82,7 @@ def test_a_body_that_hangs_on_its_tie_beyond_the_angle_is_at_rest():
     assert run.attrs["cautions"] == "none"
 
 
-def test_a_lower_body_that_falls_counts_with_all_above_it():
+def test_falling_lower_body_of_a_stack_warns():
     """It carries a squat one, which is far from its own overturning angle."""
     squat = rf.Block(width="0.6 m", height="0.5 m", mass="300 kg")
     slender = rf.Block(width="0.7 m", height="3 m", mass="3 t")
@@ -103,7 +103,7 @@ def test_a_lower_body_that_falls_counts_with_all_above_it():
 
 @pytest.mark.parametrize("parts", [[], [PADS], [SOIL], [PADS, CAP, SOIL]], ids=len)
 @pytest.mark.parametrize("share", [0.9, 1.1])
-def test_the_bound_is_that_of_the_energy(parts, share):
+def test_end_in_motion_warning_follows_the_energy_bound(parts, share):
     """A block that is let go with a rotation rate of that energy, and looked at at once."""
     system = rf.System(BLOCK, *parts)
     setting = system.assembly.setting
@@ -117,7 +117,7 @@ def test_the_bound_is_that_of_the_energy(parts, share):
         system.simulate(duration="1 ms", initial=start, outputs=None)
 
 
-def test_sweeps_say_so_of_their_cases():
+def test_sweep_warns_of_cases_ending_in_motion():
     with pytest.warns(ModelWarning, match=STILL_MOVING):
         runs = rf.sweep(rf.System(BLOCK), PULSE, scale=[0.2, 1.0], progress=False)
     said = runs.message.to_numpy().ravel()
@@ -125,14 +125,14 @@ def test_sweeps_say_so_of_their_cases():
     assert STILL_MOVING in said[1]
 
 
-def test_critical_scales_say_so():
+def test_critical_scale_warns_of_runs_ending_in_motion():
     system = rf.System(BLOCK)
     with pytest.warns(SolverWarning, match=STILL_MOVING):
         found = rf.critical_scale(system, PULSE, scales=10, runs=20, progress=False)
     assert STILL_MOVING in found.attrs["cautions"]
 
 
-def test_a_certificate_speaks_of_the_time_to_the_end():
+def test_certificate_of_a_run_ending_in_motion_is_limited_to_its_end():
     with pytest.warns(SolverWarning, match=STILL_MOVING):
         found = rf.System(BLOCK).simulate(PULSE, certify=True)
     assert found.attrs["certificate"].startswith("To the end of the run, where it can still")
@@ -160,14 +160,14 @@ def pedestal(height, width="1 m", stiffness="5 MPa"):
         ),
     ],
 )
-def test_a_stack_that_cannot_be_held_far_has_its_energy(height, stiffness):
+def test_overturning_energy_exists_for_stacks_on_soft_soil(height, stiffness):
     setting = pedestal(height, stiffness=stiffness).assembly.setting
     rigid = 4e3 * 9.80665 * math.hypot(0.5, 1.0) * (1.0 - math.cos(setting.overturning_angle))
     assert 0.0 <= setting.overturning_energy < rigid
 
 
 @pytest.mark.filterwarnings("ignore::rockframe.errors.RockframeWarning")
-def test_a_cap_on_soft_soil_leans_further_than_the_block():
+def test_cap_on_soft_soil_rotates_more_than_the_block():
     setting = pedestal("1 m", stiffness="1 MPa").assembly.setting
     angle = setting.overturning_angle
     far = setting.statics(angle)
@@ -175,7 +175,7 @@ def test_a_cap_on_soft_soil_leans_further_than_the_block():
     assert angle < far.reactions["cap_rotation"] < 1.01 * angle
 
 
-def test_where_no_soil_carries_a_stack_its_energy_is_that_on_the_way(monkeypatch):
+def test_overturning_energy_without_equilibrium_uses_the_reached_range(monkeypatch):
     setting = pedestal("0.5 m").assembly.setting
     whole, held = setting.overturning_energy, type(setting).curve
 
@@ -191,7 +191,7 @@ def test_where_no_soil_carries_a_stack_its_energy_is_that_on_the_way(monkeypatch
 
 @pytest.mark.filterwarnings("ignore::rockframe.errors.RockframeWarning")
 @pytest.mark.parametrize("amplitude", ["1 m/s^2", pytest.param("3 m/s^2", marks=pytest.mark.long)])
-def test_a_run_of_such_a_stack_is_kept(amplitude):
+def test_run_of_a_stack_on_soft_soil_is_completed(amplitude):
     pulse = rf.GroundMotion.sine_pulse(amplitude, "1 Hz")
     found = pedestal("2 m").simulate(pulse, outputs=None)
     assert found.attrs["verdict"]
@@ -214,13 +214,13 @@ TALL = rf.Block(width="0.5 m", height="2 m", mass="400 kg", eccentricity="0.05 m
         rf.System(BLOCK, PADS, rf.Load(at=("0 m", "2 m"), vertical="4 kN")),
     ],
 )  # fmt: skip
-def test_no_more_is_stored_than_its_bound(system, share):
+def test_stored_energy_does_not_exceed_its_bound(system, share):
     rotation = share * system.assembly.setting.overturning_angle
     stored = stored_energy(system.assembly.setting, rotation)
     assert stored <= max_stored_energy(system.assembly, rotation) * (1.0 + 1e-9)
 
 
-def test_the_bound_of_what_is_stored_is_one():
+def test_stored_energy_bound_is_infinite_on_slopes_and_under_loads():
     """Uphill, and under a load, more is stored than the weight alone would: there is no bound."""
     level = max_stored_energy(rf.System(BLOCK, PADS).assembly, 0.01)
     for system, rotation in (

@@ -26,7 +26,7 @@ pytestmark = pytest.mark.unit
 
 
 @pytest.mark.parametrize("value", [4, "4 m", None, [1, 2], np.array([0.1]), rf.Block, 1j])
-def test_short_values_are_shown_as_written(value):
+def test_short_values_are_shown_by_repr(value):
     assert short_repr(value) == repr(value)
 
 
@@ -57,7 +57,7 @@ def test_arrays_and_datasets_are_shown_by_their_type():
         lambda long: rf.GroundMotion.sine_pulse().baseline_corrected(order=long),
     ],
 )
-def test_messages_do_not_print_all_of_a_long_value(call):
+def test_messages_truncate_long_values(call):
     with pytest.raises(RockframeError) as caught:
         call([0.05] * 5000)
     assert max(len(line) for line in str(caught.value).splitlines()) < 4 * MAX_SHOWN_LENGTH
@@ -73,7 +73,7 @@ OF_MANY_FAULTS = {
 
 @pytest.mark.parametrize("again", [lambda one: pickle.loads(pickle.dumps(one)), copy.copy])  # noqa: S301
 @pytest.mark.parametrize("kind", [getattr(errors, name) for name in dir(errors)])
-def test_errors_come_back_whole_from_other_processes_and_from_copies(kind, again):
+def test_errors_survive_pickling_and_copying(kind, again):
     made = OF_MANY_FAULTS.get(kind, lambda: kind("out of range"))()
     other = again(made)
     assert type(other) is kind
@@ -137,7 +137,7 @@ def test_notebooks_show_the_line_that_was_wrong_and_no_other(misuse, monkeypatch
     assert len(whole) > 2  # for those who look for it
 
 
-def test_ipython_shows_the_line_that_was_wrong_and_no_other():
+def test_ipython_shows_only_the_wrong_line():
     pytest.importorskip("IPython", reason="IPython is not installed")
     code = """
 from IPython.core.interactiveshell import InteractiveShell

@@ -139,7 +139,7 @@ def write_others():
 
 @pytest.mark.wide
 @pytest.mark.parametrize("words", REFUSED)
-def test_no_command_replaces_what_is_read_or_of_another_kind(words, folder, capsys):
+def test_commands_do_not_replace_inputs_or_foreign_files(words, folder, capsys):
     write_others()
     before = contents(folder)
     assert main(words.split()) == 2
@@ -167,7 +167,7 @@ REPLACED = (
 
 @pytest.mark.usefixtures("no_pictures")
 @pytest.mark.parametrize("words", REPLACED)
-def test_commands_replace_what_rockframe_wrote_and_else_what_they_are_told_to(words, folder):
+def test_commands_replace_own_files_and_others_on_request(words, folder):
     for ending in ("nc", "csv", "png", "html"):
         Path(f"mine.{ending}").write_text("mine")
     given = words.split()
@@ -182,7 +182,7 @@ def test_commands_replace_what_rockframe_wrote_and_else_what_they_are_told_to(wo
     assert not [path for path in folder.iterdir() if path.name.startswith(".")]
 
 
-def test_functions_replace_nothing_that_they_did_not_write(folder):
+def test_functions_do_not_replace_foreign_files(folder):
     write_others()
     run = xr.open_dataset("run.nc")
     moving = rf.plot.animation(run, frames_per_second=2)
@@ -228,7 +228,7 @@ def test_functions_replace_nothing_that_they_did_not_write(folder):
     mpl.pyplot.close("all")
 
 
-def test_a_file_is_written_whole_or_stays_as_it_was(tmp_path):
+def test_file_is_written_completely_or_left_unchanged(tmp_path):
     kind = FileKind.marked("a text", (".txt",), "by rockframe")
     path = tmp_path / "x.txt"
     link = tmp_path / "link.txt"
@@ -251,7 +251,7 @@ def test_a_file_is_written_whole_or_stays_as_it_was(tmp_path):
     "closed",
     [pytest.param("|head", marks=pytest.mark.long), pytest.param("full", marks=pytest.mark.wide)],
 )
-def test_nothing_is_lost_where_the_output_is_not_read(closed, folder):
+def test_output_file_survives_closed_or_full_stdout(closed, folder):
     words = [sys.executable, "-m", "rockframe", "run", "scene.toml", "-o", "new.nc"]
     reader, writer = os.pipe()
     os.close(reader)  # whoever read has gone before a word was printed
@@ -289,7 +289,7 @@ THEMSELVES = {
 """Modules that write, and why they may."""
 
 
-def test_nothing_else_writes_files():
+def test_only_known_modules_write_files():
     """A function that writes goes by `write_file`, or its module stands above with its reason."""
     package = Path(rf.__file__).parent
     found = set()

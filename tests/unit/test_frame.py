@@ -52,7 +52,7 @@ class TestAsValues:
             component.si.width = 0.1
         assert repr(component) == before
 
-    def test_they_equal_their_like_and_nothing_else(self, name, component):
+    def test_equal_only_identical_components(self, name, component):
         assert component == examples()[name]
         assert hash(component) == hash(examples()[name])
         others = [other for key, other in EXAMPLES.items() if key != name]
@@ -72,7 +72,7 @@ class TestAsValues:
         assert copy.copy(component) == component
         assert copy.deepcopy(component).si == component.si
 
-    def test_they_survive_the_way_through_text_bit_for_bit(self, component):
+    def test_survive_json_round_trip_exactly(self, component):
         description = component.to_dict()
         assert all(isinstance(value, str | float) for value in description.values())
         text = json.dumps(description, allow_nan=False)
@@ -82,17 +82,17 @@ class TestAsValues:
         assert again.si == component.si
         assert json.dumps(again.to_dict()) == text
 
-    def test_their_repr_builds_them_again(self, component):
+    def test_repr_evaluates_to_an_equal_component(self, component):
         space = {type(component).__name__: type(component)}
         assert eval(repr(component), space) == component  # noqa: S307
 
-    def test_they_say_what_they_are_for(self, component):
+    def test_have_noun_and_docstring(self, component):
         assert component.noun
         assert type(component).__doc__
 
 
 @pytest.mark.parametrize("name", FRAMES)
-def test_the_members_survive_the_way_through_text(name):
+def test_members_survive_json_round_trip(name):
     frame = EXAMPLES[name]
     again = component_from_dict(json.loads(json.dumps(frame.to_dict())))
     assert again.members == frame.members
@@ -262,7 +262,7 @@ def as_members(rectangles):
 @pytest.mark.filterwarnings("ignore::rockframe.errors.ModelWarning")
 @given(buildings())
 @settings(max_examples=100, deadline=None)
-def test_the_shape_factor_is_one_or_more_and_that_of_a_sum_over_points(building):
+def test_shape_factor_matches_point_sum_and_is_at_least_one(building):
     width, height, rectangles = building
     points = by_brute_force(rectangles, width, height)
     assume(points < 1e4)  # else all mass is in the middle, where the points are too coarse
@@ -280,7 +280,7 @@ def test_the_shape_factor_is_one_or_more_and_that_of_a_sum_over_points(building)
 
 
 @pytest.mark.parametrize(("columns", "rows"), [(1, 1), (2, 3), (7, 4), (10, 25)])
-def test_a_solid_rectangle_of_many_rectangles_has_a_shape_factor_of_three(columns, rows):
+def test_tiled_solid_rectangle_has_shape_factor_three(columns, rows):
     w, h = 4.0 / columns, 10.0 / rows
     tiles = [
         (1.0, -2.0 + (i + 0.5) * w, (j + 0.5) * h, w, h)
@@ -290,7 +290,7 @@ def test_a_solid_rectangle_of_many_rectangles_has_a_shape_factor_of_three(column
     assert frame.shape_factor == pytest.approx(3.0, rel=1e-13)
 
 
-def test_a_solid_rectangle_of_points_tends_to_a_shape_factor_of_three():
+def test_grid_of_points_converges_to_shape_factor_three():
     excess = []
     for n in (4, 8, 16):
         points = [
@@ -328,7 +328,7 @@ def test_cutting_a_member_in_two_changes_nothing():
     assert cut.mass == whole.mass
 
 
-def test_the_numbers_of_a_small_building_by_hand():
+def test_small_building_matches_hand_calculation():
     frame = FrameEquivalent.from_members([core(), tank()], **MIDDLE, depth="5 m")
     about_middle = 10e3 * 104.0 / 12.0 + 800.0 + 1e3 * (0.25 + 4.0)
     assert frame.mass.m_as("kg") == 11e3
@@ -342,7 +342,7 @@ def test_the_numbers_of_a_small_building_by_hand():
     assert FrameEquivalent.from_members([core()], **OUTLINE).space_proportion is None
 
 
-def test_members_may_be_given_as_mappings_or_one_by_one():
+def test_members_may_be_mappings_or_a_generator():
     built = FrameEquivalent.from_members([core(), tank()], **OUTLINE)
     plain = {"name": "core", "kind": "wall", "mass": "10 t", "x": "0 m", "y": "500 cm"}
     plain |= {"width": "2 m", "height": "10 m", "depth": "3 m"}
@@ -353,7 +353,7 @@ def test_members_may_be_given_as_mappings_or_one_by_one():
 # centre of mass -----------------------------------------------------------------------------
 
 
-def test_a_high_centre_of_mass_is_warned_about():
+def test_centre_of_mass_off_mid_height_warns():
     for y, warned in (("5.99 m", False), ("6.01 m", True), ("3.99 m", True), ("4.01 m", False)):
         point = tank(y=y, x="0 m")
         if not warned:
@@ -368,7 +368,7 @@ def test_a_high_centre_of_mass_is_warned_about():
         FrameEquivalent.from_members([tank(y="7 m", x="0 m")], **MIDDLE)
 
 
-def test_a_centre_of_mass_beside_the_middle_is_warned_about():
+def test_centre_of_mass_off_the_middle_warns():
     FrameEquivalent.from_members([tank(y="5 m", x="-0.39 m")], **MIDDLE)
     with pytest.warns(ModelWarning, match=r"0\.41 m left of the middle"):
         FrameEquivalent.from_members([tank(y="5 m", x="-0.41 m")], **MIDDLE)
@@ -376,7 +376,7 @@ def test_a_centre_of_mass_beside_the_middle_is_warned_about():
         FrameEquivalent.from_members([tank(y="5 m", x="0.41 m")], **MIDDLE)
 
 
-def test_the_centre_of_mass_is_where_the_members_have_it():
+def test_centre_of_mass_follows_from_the_members():
     frame = EXAMPLES["members"]
     x, y = 0.5 / 11.0, 57.0 / 11.0
     # tank and core about the common centre, by the parallel-axis theorem
@@ -395,7 +395,7 @@ def test_the_centre_of_mass_is_where_the_members_have_it():
     assert middle.inertia.m_as("kg*m^2") == pytest.approx(inertia + shift, rel=1e-14)
 
 
-def test_a_regular_frame_is_as_in_the_paper_unless_told_otherwise():
+def test_regular_frame_centre_of_mass_defaults_to_the_middle():
     regular = EXAMPLES["regular"]
     told = FrameEquivalent.from_members(**REGULAR, centre_of_mass="middle")
     assert told == regular

@@ -33,7 +33,7 @@ def bounds(member):
     )
 
 
-def test_the_members_of_a_regular_frame():
+def test_regular_frame_has_expected_members():
     frame = EXAMPLES["regular, all measures"]
     kinds = [member.kind for member in frame.members]
     assert {kind: kinds.count(kind) for kind in set(kinds)} == {
@@ -57,7 +57,7 @@ def test_the_members_of_a_regular_frame():
     assert frame.height.m_as("m") == pytest.approx(9.4)
 
 
-def test_the_volume_of_a_regular_frame_by_hand():
+def test_regular_frame_volume_matches_hand_calculation():
     frame = EXAMPLES["regular"]
     clear = 4.0 - 2 * 0.25
     columns = 4 * 0.25**2 * 9.0
@@ -83,7 +83,7 @@ def test_no_two_members_of_a_regular_frame_overlap():
         assert min(overlaps) < 1e-9
 
 
-def test_equal_storeys_may_be_given_one_by_one():
+def test_equal_storeys_may_be_listed_individually():
     equal = EXAMPLES["regular"]
     for heights in (["3 m"] * 3, "3 m; 300 cm; 3 m", pint.Quantity([3.0, 3.0, 3.0], "m")):
         listed = FrameEquivalent.from_members(**UNEQUAL, storey_heights=heights)
@@ -94,7 +94,7 @@ def test_equal_storeys_may_be_given_one_by_one():
     assert len([member for member in one.members if member.kind == "wall"]) == 2
 
 
-def test_the_plan_is_square_and_the_columns_too_unless_told_otherwise():
+def test_plan_and_columns_default_to_square():
     told = FrameEquivalent.from_members(**REGULAR, depth="4 m", column_depth="0.25 m")
     assert told == EXAMPLES["regular"]
     thick = FrameEquivalent.from_members(
@@ -111,7 +111,7 @@ def test_density_changes_the_mass_and_not_the_shape_factor():
     )
 
 
-def test_without_walls_and_beams():
+def test_regular_frame_may_lack_walls_and_beams():
     flat = RegularFrame(**{**REGULAR, "beam_height": "0.12 m"}, infill_thickness=None)
     assert {member.kind for member in flat.members} == {"column", "slab"}
     assert flat == RegularFrame(**{**REGULAR, "beam_height": "0.12 m"}, infill_thickness="none")
@@ -170,7 +170,7 @@ def test_the_table_of_members(tmp_path):
         assert again.identical(table)
 
 
-def test_the_table_says_what_is_not_known():
+def test_members_table_marks_unknown_values():
     table = EXAMPLES["members"].members_table()
     assert "space_proportion" not in table.attrs
     assert "depth" not in table.attrs
@@ -263,12 +263,12 @@ def test_a_faulty_regular_frame_is_refused(changes, words):
 
 
 @pytest.mark.parametrize("name", [name for name in REGULAR if name != "storeys"])
-def test_the_measures_of_a_regular_frame_need_units(name):
+def test_regular_frame_dimensions_need_units(name):
     with pytest.raises(UnitsError, match=f"{name} needs"):
         FrameEquivalent.from_members(**{**REGULAR, name: 0.25})
 
 
-def test_a_regular_frame_itself_says_what_it_needs():
+def test_regular_frame_requires_complete_arguments():
     with pytest.raises(ComponentError, match="give storeys and height, or storey_heights"):
         RegularFrame(**UNEQUAL)
     with pytest.raises(UnitsError, match=r"storey_heights\[0\] needs a length"):
@@ -310,7 +310,7 @@ def test_members_that_make_no_building_are_refused(members, words):
         FrameEquivalent.from_members(members, **OUTLINE, depth="5 m")
 
 
-def test_members_and_the_measures_of_a_regular_frame_exclude_one_another():
+def test_members_and_regular_frame_dimensions_are_mutually_exclusive():
     with pytest.raises(ComponentError, match="members or storeys, density, not both"):
         FrameEquivalent.from_members([core()], **OUTLINE, storeys=3, density="2500 kg/m^3")
     with pytest.raises(ComponentError, match="members or slab_thickness, infill_thickness"):
@@ -334,7 +334,7 @@ def test_a_damaged_description_is_refused(members):
 
 @pytest.mark.parametrize("size", ["1e200 m", "1e-200 m", "5e-324 m", "1e308 m"])
 @pytest.mark.parametrize("depth", [None, "size"])
-def test_absurd_sizes_are_refused_or_make_a_sound_frame(size, depth):
+def test_extreme_sizes_are_refused_or_give_finite_properties(size, depth):
     point = Member(name="a", mass="1 kg", x="0 m", y="0 m", inertia="0 kg*m^2")
     sheet = {"name": "b", "mass": "1 kg", "x": "0 m", "y": size, "width": size, "height": size}
     for members in ([point], [{**sheet, "y": f"{float(size.split()[0]) / 2!r} m"}]):

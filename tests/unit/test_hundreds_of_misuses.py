@@ -642,7 +642,7 @@ def test_each_misuse_is_refused_by_its_name(rows, inside):
     assert sorted(Path().rglob("*")) == kept, "nothing is written by what is refused"
 
 
-def test_what_is_misspelt_is_answered_by_a_question(inside):
+def test_misspelt_names_get_a_suggestion(inside):
     silent = [row for row in NAMES if "meant?" not in str(answered(row, inside))]
     assert not silent
 
@@ -655,7 +655,7 @@ def typed(words, capsys):
     return code, "".join(capsys.readouterr())
 
 
-def test_each_line_that_is_mistyped_is_refused(inside, capsys):
+def test_mistyped_command_lines_are_refused(inside, capsys):
     kept = sorted(Path().rglob("*"))
     faults = []
     for line, words in LINES.items():
@@ -666,7 +666,7 @@ def test_each_line_that_is_mistyped_is_refused(inside, capsys):
     assert sorted(Path().rglob("*")) == kept
 
 
-def test_each_file_that_is_wrong_is_refused_with_its_line(inside, capsys, tmp_path, monkeypatch):
+def test_invalid_files_are_refused_with_file_name(inside, capsys, tmp_path, monkeypatch):
     for name in ("scene.toml", "record.AT2"):
         shutil.copy(name, tmp_path)
     monkeypatch.chdir(tmp_path)
@@ -680,7 +680,7 @@ def test_each_file_that_is_wrong_is_refused_with_its_line(inside, capsys, tmp_pa
     assert not faults
 
 
-def test_there_are_hundreds():
+def test_misuse_tables_have_hundreds_of_rows():
     assert len(NAMES) + len(VALUES) + len(LINES) + len(FILES) > 350
 
 
@@ -707,7 +707,7 @@ OF_PYTHON = ("MotionSuite.get", "MotionSuite.items", "MotionSuite.keys", "Motion
 TAKING_ANYTHING = ("System", "GroundMotion")
 
 
-def test_no_call_is_answered_by_python_alone():
+def test_wrong_arguments_raise_rockframe_errors():
     silent = []
     for name, one in callables():
         if name in OF_PYTHON:
@@ -729,7 +729,7 @@ def test_no_call_is_answered_by_python_alone():
     assert not silent
 
 
-def test_attributes_are_looked_for_as_python_does():
+def test_missing_attributes_behave_as_in_python():
     assert not hasattr(BLOCK, "__array__")
     assert not hasattr(rf.plot, "respones")
     assert getattr(SYSTEM, "simulat", None) is None
@@ -738,7 +738,7 @@ def test_attributes_are_looked_for_as_python_does():
     assert "meant?" not in str(caught.value)
 
 
-def test_a_property_that_fails_says_why():
+def test_failing_property_reports_its_cause():
     class Leaning(rf.extension.Component):
         """A part whose property needs what there is not."""
 
@@ -750,5 +750,5 @@ def test_a_property_that_fails_says_why():
         Leaning().angle  # noqa: B018
 
 
-def test_json_of_a_system_goes_there_and_back():
+def test_system_survives_json_round_trip():
     assert rf.System.from_dict(json.loads(json.dumps(SYSTEM.to_dict()))) == SYSTEM

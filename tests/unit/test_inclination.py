@@ -15,7 +15,7 @@ BLOCK = rf.Block(width="0.6 m", height="2 m", mass="1 t")
 SOFT = rf.TwoSpringSupport(stiffness="60 kN/m", damping_ratio=0.1)
 
 
-def test_it_needs_a_unit_and_stays_below_a_right_angle():
+def test_inclination_needs_an_angle_below_90_degrees():
     for given, words in ((3.0, "bare number"), ("3", "no unit"), ("3 m", "angle"),
                          ("90 deg", "between -90° and 90°")):  # fmt: skip
         with pytest.raises(AssemblyError, match=words):
@@ -26,7 +26,7 @@ def test_it_needs_a_unit_and_stays_below_a_right_angle():
     assert turned.m_as("rad") == math.radians(3.0)
 
 
-def test_what_falls_by_its_own_weight_is_refused():
+def test_block_falling_by_its_own_weight_is_refused():
     for angle, side in (("17 deg", "left"), ("-17 deg", "right")):
         for parts in ((BLOCK,), (BLOCK, rf.TwoSpringSupport(stiffness="1 GN/m", damping_ratio=1))):
             with pytest.raises(AssemblyError, match=f"falls to the {side} by its own weight"):
@@ -40,14 +40,14 @@ def test_free_decay_is_fitted_on_a_level_base_only():
         rf.fit_free_decay(rf.System(BLOCK, inclination="1 deg"), peaks=([5.0, 4.0], "deg"))
 
 
-def test_descriptions_tell_the_slope_and_both_sides():
+def test_description_states_slope_and_both_sides():
     text = rf.System(BLOCK, inclination="-3 deg").describe()
     for words in ("higher on the left", "to the left 0.343817 rad", "to the right 0.239097 rad",
                   "sin(theta s + i - a)", "friction to stand"):  # fmt: skip
         assert words in text, words
 
 
-def test_a_motion_is_turned_and_gravity_lasts():
+def test_inclined_motion_is_rotated_and_includes_gravity():
     slope = Incline(math.radians(30.0), 10.0)
     samples = np.array([0.0, 2.0, -1.0])
     felt = slope.resolved(
@@ -68,7 +68,7 @@ def test_a_motion_is_turned_and_gravity_lasts():
     assert slope.normal_gravity == pytest.approx(10.0 * c)
 
 
-def test_ladders_certificates_and_critical_scales_know_the_slope():
+def test_ladder_certificate_and_critical_scale_use_the_slope():
     pads = rf.TwoSpringSupport(frequency_ratio=20, damping_ratio=0.1)
     system = rf.System(BLOCK, pads, inclination="3 deg")
     for rung in rf.model_ladder(system).values():
@@ -87,7 +87,7 @@ def test_ladders_certificates_and_critical_scales_know_the_slope():
 
 
 @pytest.mark.parametrize(("peak", "leaves"), [("-9.9 m/s^2", False), ("-10.1 m/s^2", True)])
-def test_a_slope_is_left_as_soon_as_nothing_presses_on_it(peak, leaves):
+def test_separation_warning_uses_gravity_normal_to_the_slope(peak, leaves):
     """On a slope g cos(i) presses, less than g: of a motion normal to it that much is enough."""
     angle, gravity = math.radians(12.0), 10.2
     size = float(peak.split()[0])

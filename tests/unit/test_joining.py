@@ -38,7 +38,7 @@ def of_one_run(dataset):
     return RUN_ATTRIBUTES & set(dataset.attrs)
 
 
-def test_the_names_are_those_of_what_differs_between_a_run_that_stands_and_one_that_falls():
+def test_run_attributes_list_matches_attributes_that_differ_between_runs():
     asked = {"history", "run_json", "motion_sha256", "motion_json", "motion_history"}
     with pytest.warns(SolverWarning):
         cut = run(STANDS, accuracy=rf.Accuracy(rtol=1e-7, max_steps=40), certify=True)
@@ -62,7 +62,7 @@ def test_the_names_are_those_of_what_differs_between_a_run_that_stands_and_one_t
     assert differing - asked - settings == RUN_ATTRIBUTES - not_here
 
 
-def test_no_order_of_joining_leaves_the_verdict_of_one_run(runs):
+def test_concat_never_retains_attributes_of_one_run(runs):
     """All stand, all overturn, some do, in one step and in two, by files too."""
     rows = [row(runs, 2.0, STANDS), row(runs, FALLS, 10.0), row(runs, STANDS, FALLS)]
     for chosen in (*rows, [runs[STANDS]], [runs[STANDS]] * 2, [runs[FALLS]] * 2):
@@ -81,7 +81,7 @@ def test_no_order_of_joining_leaves_the_verdict_of_one_run(runs):
         assert not of_one_run(longer)
 
 
-def test_what_plain_xarray_keeps_is_dropped_when_it_is_joined_further(runs):
+def test_concat_drops_run_attributes_left_by_xarray(runs):
     """The fault: a row that all stand, beside one of which some fell, says that none did."""
     plain = [
         xr.concat(
@@ -100,7 +100,7 @@ def test_what_plain_xarray_keeps_is_dropped_when_it_is_joined_further(runs):
     assert not of_one_run(rf.concat(plain, "case"))
 
 
-def test_one_step_of_plain_xarray_tells_no_mixed_verdict_and_no_caution_of_one(runs):
+def test_xarray_concat_drops_conflicting_run_attributes(runs):
     """Every run says all of it, so that what differs conflicts."""
     assert runs[STANDS].attrs["cautions"] == runs[FALLS].attrs["cautions"] == "none"
     warned = runs[STANDS].assign_attrs(cautions=CAUTION)
@@ -115,7 +115,7 @@ def test_one_step_of_plain_xarray_tells_no_mixed_verdict_and_no_caution_of_one(r
         )
 
 
-def test_cautions_are_those_of_the_run(runs):
+def test_concat_drops_cautions_of_single_runs(runs):
     warned = runs[STANDS].assign_attrs(cautions=CAUTION)
     for chosen in ([warned, runs[2.0]], [runs[2.0], warned], [warned, warned]):
         assert "cautions" not in rf.concat(chosen).attrs
@@ -124,7 +124,7 @@ def test_cautions_are_those_of_the_run(runs):
     assert cut.attrs["cautions"].startswith("Not finished")
 
 
-def test_what_is_shared_stays(runs):
+def test_concat_preserves_shared_attributes(runs):
     joined = rf.concat(runs.values(), "scale", list(runs))
     assert joined.scale.values.tolist() == list(runs)
     for name in ("Conventions", "system_json", "model", "motion", "solver_rtol", "run_json"):
@@ -143,7 +143,7 @@ def test_what_is_shared_stays(runs):
         rf.System.from_dataset(mixed)
 
 
-def test_motions_that_differ_are_named_along_the_dimension(runs, tmp_path):
+def test_different_motions_become_a_coordinate(runs, tmp_path):
     other = run(STANDS, rf.GroundMotion.sine_pulse("1 m/s^2", "2 Hz"))
     names = [runs[STANDS].attrs["motion"], other.attrs["motion"]]
     along = rf.concat([runs[STANDS], other])
@@ -179,7 +179,7 @@ def test_labels_may_have_a_unit(runs):
     assert rf.concat(placed, "scale").scale.values.tolist() == list(runs)
 
 
-def test_histories_are_joined_where_their_times_are_the_same(runs):
+def test_histories_are_joined_only_at_equal_times(runs):
     both = rf.concat(row(runs, 2.0, STANDS), "scale", histories=True)
     assert both.rotation.dims == ("scale", "time")
     assert both.contact_state.dtype == np.int8
@@ -187,7 +187,7 @@ def test_histories_are_joined_where_their_times_are_the_same(runs):
         rf.concat(row(runs, STANDS, FALLS), "scale", histories=True)
 
 
-def test_other_answers_are_joined_too():
+def test_measures_and_spectra_can_be_joined():
     motions = [PULSE, rf.GroundMotion.sine_pulse("2 m/s^2", "3 Hz")]
     measures = rf.concat([rf.intensity_measures(motion) for motion in motions], "motion")
     assert measures.motion.values.tolist() == [motion.name for motion in motions]
@@ -195,7 +195,7 @@ def test_other_answers_are_joined_too():
     assert spectra.spectral_displacement.dims == ("motion", "damping_ratio", "period")
 
 
-def test_what_cannot_be_joined(runs):
+def test_invalid_concat_arguments_are_refused(runs):
     one = runs[STANDS]
     joined = rf.concat([one, one], "scale", [1, 2])
     for given, options, words in (
@@ -225,7 +225,7 @@ def sweep_of(widths, *pulses):
 
 
 @pytest.mark.parametrize("dim", ["width", "motion"])
-def test_sweeps_that_differ_along_one_dimension_are_one_sweep(dim, tmp_path):
+def test_sweeps_differing_along_one_dimension_join_into_a_sweep(dim, tmp_path):
     if dim == "width":
         parts = [sweep_of([0.4, 0.5]), sweep_of([0.6])]
         whole = sweep_of([0.4, 0.5, 0.6])
@@ -248,7 +248,7 @@ def test_sweeps_that_differ_along_one_dimension_are_one_sweep(dim, tmp_path):
         assert again.rockframe.verdict == whole.verdict
 
 
-def test_sweeps_that_differ_otherwise_are_none():
+def test_sweeps_differing_otherwise_do_not_join_into_a_sweep():
     one = sweep_of([0.4, 0.5])
     pulse = {"1 Hz": rf.GroundMotion.sine_pulse("3 m/s^2", "1 Hz")}
     worn = rf.sweep(CABINET, pulse, width=["0.4 m", "0.5 m"], restitution=[0.7], **SOME)
@@ -266,7 +266,7 @@ def test_sweeps_that_differ_otherwise_are_none():
                 rf.case(joined, width=0.4, scale=1.0)
 
 
-def test_bodies_and_restrainers_that_a_run_has_not_are_gaps(tmp_path):
+def test_restrainers_missing_from_a_run_become_gaps(tmp_path):
     def tied(*names):
         ties = [rf.Tendon(stiffness="1 MN/m", name=name) for name in names]
         return rf.System(BLOCK, *ties).simulate(PULSE)
@@ -285,7 +285,7 @@ def test_bodies_and_restrainers_that_a_run_has_not_are_gaps(tmp_path):
 
 @pytest.mark.long
 @pytest.mark.filterwarnings("ignore::rockframe.errors.SolverWarning")
-def test_sweeps_of_which_one_has_gaps_are_that_of_all(tmp_path):
+def test_joined_sweeps_with_gaps_equal_the_whole_sweep(tmp_path):
     def drums(count):
         joint = rf.RigidGround(friction=0.4)
         return rf.System(rf.Stack(*[BLOCK] * count, interfaces=[joint] * (count - 1)), joint)

@@ -9,7 +9,7 @@ from rockframe.solve import integrate
 pytestmark = pytest.mark.unit
 
 
-def test_the_first_steps_are_kept_and_the_run_says_so(monkeypatch):
+def test_long_run_stores_only_first_steps_and_warns(monkeypatch):
     block = rf.Block(width="1 m", height="3 m", mass="1 t")
     pads = rf.TwoSpringSupport(frequency_ratio=4000, damping_ratio=0.1)
     system, pulse = rf.System(block, pads), rf.GroundMotion.sine_pulse("-4 m/s^2", "1 Hz")
@@ -26,7 +26,7 @@ def test_the_first_steps_are_kept_and_the_run_says_so(monkeypatch):
     assert float(run.peak_base_shear) < float(whole.peak_base_shear)
 
 
-def test_a_run_that_pauses_goes_on_to_the_last_bit(monkeypatch):
+def test_pausing_for_interrupts_does_not_change_the_run(monkeypatch):
     motion = rf.GroundMotion.harmonic("3 m/s^2", "2 Hz", duration="3 s")
     block = rf.Block(width="1 m", height="3 m", mass="1 t")
     system = rf.System(block, rf.TwoSpringSupport(frequency_ratio=40, damping_ratio=0.1))
@@ -35,7 +35,7 @@ def test_a_run_that_pauses_goes_on_to_the_last_bit(monkeypatch):
     assert system.simulate(motion).drop_attrs().identical(whole.drop_attrs())
 
 
-def test_a_run_that_would_make_endless_steps_ends_at_their_limit():
+def test_run_stops_at_the_step_limit():
     block = rf.Block(width="1 m", height="3 m", mass="1 t")
     system = rf.System(block, rf.TwoSpringSupport(frequency_ratio=1e10, damping_ratio=0.1))
     accuracy = rf.Accuracy(substeps="fewest", steps_per_period=10.0, max_steps=100)

@@ -124,7 +124,7 @@ ASKED = {
 
 
 @pytest.mark.parametrize("asked", ASKED)
-def test_a_message_names_the_way(asked):
+def test_error_message_suggests_the_correct_usage(asked):
     call, kind, words = ASKED[asked]
     with pytest.raises(kind) as caught:
         call()
@@ -132,7 +132,7 @@ def test_a_message_names_the_way(asked):
         assert each in str(caught.value)
 
 
-def test_archives_are_told_from_records(tmp_path):
+def test_archives_of_several_files_are_refused(tmp_path):
     with zipfile.ZipFile(tmp_path / "two.zip", "w") as archive:
         for name in ("a.csv", "b.csv"):
             archive.writestr(name, "time (s),acceleration (g)\n0,0\n0.01,0.1\n0.02,-0.1\n")
@@ -147,13 +147,13 @@ def test_archives_are_told_from_records(tmp_path):
     assert "some.gz/some" in str(caught.value)
 
 
-def test_corners_of_a_filter_go_without_their_names():
+def test_filter_corners_may_be_positional():
     motion = rf.GroundMotion.stochastic(6, "10 km", seed=1)
     assert motion.filtered("0.1 Hz", "25 Hz") == motion.filtered(low="0.1 Hz", high="25 Hz")
     assert motion.filtered("0.1 Hz") != motion.filtered(high="0.1 Hz")
 
 
-def test_a_number_beside_its_unit_is_a_quantity():
+def test_number_and_unit_pairs_are_quantities():
     assert block(width=(1, "m")) == block(width=(np.float32(1.0), "m")) == block()
     assert rf.System(block(), gravity=(0.5, "g_0")) == rf.System(block(), gravity="0.5 g_0")
     assert block(centre_of_mass=((2, "m"), (1, "cm"))) == block(centre_of_mass=("2 m", "1 cm"))
@@ -165,7 +165,7 @@ def test_a_number_beside_its_unit_is_a_quantity():
             block(width=bad)
 
 
-def test_depths_that_contradict_one_another_are_told():
+def test_contradictory_depths_warn():
     def soil(depth, **given):
         return rf.WinklerSoil.from_subgrade_modulus(
             "20 MN/m^3", depth=depth, damping_ratio=0.2, **given
@@ -193,7 +193,7 @@ def test_depths_that_contradict_one_another_are_told():
     "name",
     [path.stem for path in sorted(EXAMPLES.glob("*.py")) if '"record' in path.read_text()],
 )
-def test_an_example_without_its_file_says_so_in_a_line(name, tmp_path, monkeypatch, capsys):
+def test_example_without_its_file_exits_with_one_line(name, tmp_path, monkeypatch, capsys):
     file = str(EXAMPLES / f"{name}.py")
     monkeypatch.setattr(sys, "argv", [file, "none.AT2", "--folder", str(tmp_path)])
     with pytest.raises(SystemExit) as left:
@@ -203,7 +203,7 @@ def test_an_example_without_its_file_says_so_in_a_line(name, tmp_path, monkeypat
 
 
 @pytest.mark.skipif(not COMPILED, reason="this run does without compilation")
-def test_a_folder_for_machine_code_that_cannot_be_written_is_named_once(
+def test_unwritable_cache_folder_is_logged_once(
     tmp_path, monkeypatch, caplog
 ):
     own = tmp_path / "own_entries.py"
@@ -258,7 +258,7 @@ SHAKING = rf.GroundMotion.sine_pulse("0.3 g", "1 Hz")
 
 
 @pytest.mark.parametrize("name", MISSPELT)
-def test_what_is_misspelt_is_answered_with_a_proposal(name):
+def test_misspelt_names_get_a_suggestion(name):
     misspelt, words = MISSPELT[name]
     with pytest.raises((TypeError, rf.errors.RockframeError)) as caught:
         misspelt()
@@ -268,7 +268,7 @@ def test_what_is_misspelt_is_answered_with_a_proposal(name):
 @pytest.mark.parametrize(
     "name", ["pga", "Pga", "peak ground acceleration", "Peak Ground Acceleration"]
 )
-def test_measures_are_known_in_any_letters(name):
+def test_measure_names_are_case_insensitive(name):
     found = rf.critical_scale(SYSTEM, SHAKING, intensity=name, largest=1, scales=2, runs=2)
     assert found.attrs["intensity"] == "peak_ground_acceleration"
     runs = rf.sweep(SYSTEM, [SHAKING, SHAKING.scaled(2)], scale=[1, 2])
@@ -322,7 +322,7 @@ def test_every_function_answers_a_misspelt_argument(name):
     assert "meant?" in str(caught.value)
 
 
-def test_names_within_suites_maps_and_examples_are_proposed():
+def test_misspelt_keys_of_suites_and_examples_get_a_suggestion():
     suite = rf.MotionSuite({"first": SHAKING, "second": SHAKING.scaled(2.0)})
     assert "frist" not in suite
     for given, words in (

@@ -169,7 +169,7 @@ def refused(call, *given):
 
 @pytest.mark.filterwarnings("ignore")
 @pytest.mark.parametrize("name", MISUSES)
-def test_what_cannot_be_is_refused(name, tmp_path, monkeypatch):
+def test_invalid_values_are_refused(name, tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     call, values = MISUSES[name]
     said = {repr(value)[:60]: refused(call, value) for value in values}
@@ -178,7 +178,7 @@ def test_what_cannot_be_is_refused(name, tmp_path, monkeypatch):
 
 @pytest.mark.filterwarnings("ignore")
 @pytest.mark.parametrize("name", OF_RESULTS)
-def test_what_cannot_be_is_refused_of_results(name, run, tmp_path, monkeypatch):
+def test_invalid_values_are_refused_for_results(name, run, tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     call, values = OF_RESULTS[name]
     said = {repr(value)[:60]: refused(call, run, value) for value in values}
@@ -186,7 +186,7 @@ def test_what_cannot_be_is_refused_of_results(name, run, tmp_path, monkeypatch):
     assert list(tmp_path.iterdir()) == []
 
 
-def test_a_place_that_a_sweep_does_not_have(runs):
+def test_missing_sweep_labels_are_refused(runs):
     for given in (7.0, "x", "1 m", 10**400, None, [1.0, 2.0]):
         assert refused(lambda value: rf.case(runs, scale=value), given) == ""
 
@@ -306,13 +306,13 @@ def told(words, capsys):
     return code != 2 or "Traceback" in said or len(said) < 30
 
 
-def test_command_lines_that_cannot_be_are_refused(folder, capsys):
+def test_invalid_command_lines_are_refused(folder, capsys):
     given = {line: [word.replace("_", " ") for word in line.split()] for line in LINES}
     assert not [line for line, words in given.items() if told(words, capsys)]
 
 
 @pytest.mark.parametrize("command", FILES)
-def test_files_that_cannot_be_are_refused(command, folder, capsys):
+def test_invalid_files_are_refused(command, folder, capsys):
     wrong = []
     for text in FILES[command]:
         Path("wrong.toml").write_text(text)
@@ -321,7 +321,7 @@ def test_files_that_cannot_be_are_refused(command, folder, capsys):
     assert not wrong
 
 
-def test_there_are_hundreds():
+def test_misuse_tables_have_hundreds_of_entries():
     in_python = sum(len(values) for _, values in (MISUSES | OF_RESULTS).values())
     assert in_python > 200
     assert len(LINES) + sum(map(len, FILES.values())) > 150

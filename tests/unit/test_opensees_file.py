@@ -46,7 +46,7 @@ def written(system, motion, tmp_path, **options):
 
 @pytest.mark.parametrize("base", BASES)
 @pytest.mark.parametrize("dashpots", ["let go", "attached"])
-def test_the_model_has_the_numbers_of_the_system(base, dashpots, tmp_path):
+def test_opensees_model_matches_the_system(base, dashpots, tmp_path):
     system = rf.System(BLOCK, BASES[base], restraint="centre")
     both = PULSE.with_vertical(PULSE.scaled(0.5))
     found = written(system, both, tmp_path, free_vibration="1 s", springs=10, dashpots=dashpots)
@@ -99,13 +99,13 @@ def test_the_model_has_the_numbers_of_the_system(base, dashpots, tmp_path):
         ([rf.RearWall(side="left", restitution=-0.3)], "a RearWall"),
     ],
 )
-def test_what_has_no_counterpart_is_refused(parts, found, tmp_path):
+def test_scenes_without_opensees_counterpart_are_refused(parts, found, tmp_path):
     with pytest.raises(ComponentError, match=rf"to_opensees: expected a block on pads.*{found}"):
         rf.System(BLOCK, *parts).to_opensees(PULSE, tmp_path / "model.py")
     assert not list(tmp_path.iterdir())
 
 
-def test_other_misuse_is_refused(tmp_path):
+def test_invalid_export_arguments_are_refused(tmp_path):
     system, path = rf.System(BLOCK, PADS), tmp_path / "model.py"
     bent = rf.Block(width="0.8 m", height="4 m", mass="2 t", centre_of_mass=("2 m", "0.1 m"))
     with pytest.raises(ComponentError, match="off the middle"):
@@ -128,7 +128,7 @@ def test_other_misuse_is_refused(tmp_path):
     system.to_opensees(PULSE.scaled(0.5), path)  # over its own
 
 
-def test_a_rotation_between_two_outputs_has_no_row(tmp_path):
+def test_rotation_at_the_final_unaligned_time_is_not_exported(tmp_path):
     """A run that overturns ends between two of them; OpenSees goes on to the next."""
     system = rf.System(BLOCK, PADS, restraint="centre")
     strong = PULSE.scaled(3.0)
@@ -162,7 +162,7 @@ def differences(system, motion, tmp_path, **options):
 )
 @pytest.mark.parametrize("row", table(PAGE, HEAD), ids=lambda row: f"{row[0]}, {row[1]}")
 @pytest.mark.filterwarnings("ignore:restitution 1 exceeds")
-def test_opensees_finds_what_the_recipe_says(row, tmp_path):
+def test_opensees_reproduces_documented_differences(row, tmp_path):
     """Under the pulse; the record takes a minute."""
     block = rf.Block(width="0.8 m", height="4 m", mass="2 t")
     name, dashpots, peak, _, history, _ = row

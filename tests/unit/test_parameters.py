@@ -74,7 +74,7 @@ KINDS.append(rf.FrameEquivalent)
         (TILTED, "vertical_displacement", None),
     ],
 )
-def test_a_part_gives_back_what_it_was_given(part, name, value):
+def test_parameters_are_readable_as_attributes(part, name, value):
     found = getattr(part, name)
     if not isinstance(value, str) or isinstance(found, str):
         assert found == value
@@ -85,7 +85,7 @@ def test_a_part_gives_back_what_it_was_given(part, name, value):
     assert found.m_as(wanted.units) == pytest.approx(wanted.magnitude, rel=1e-14)
 
 
-def test_storeys_one_by_one():
+def test_storey_heights_may_be_listed():
     frame = FRAME.replace(storey_heights=["3 m", "3.5 m"])
     assert frame.storeys == 2
     assert frame.height.m_as("m") == 6.5
@@ -126,7 +126,7 @@ def test_a_part_is_changed_by_copying(part, changes, gone):
     assert part.replace() == part
 
 
-def test_what_replaces_is_checked_as_what_is_new():
+def test_replace_validates_like_the_constructor():
     with pytest.raises(UnitsError, match="TwoSpringSupport: stiffness needs a stiffness"):
         PADS.replace(stiffness=12e6)
     with pytest.raises(ComponentError, match="damping_ratio must be zero or more"):
@@ -144,7 +144,7 @@ def test_what_replaces_is_checked_as_what_is_new():
     assert caught[0].filename == __file__
 
 
-def test_a_frame_of_members_is_changed_by_its_measures():
+def test_replace_changes_dimensions_of_a_regular_frame():
     measures = {
         "width": "4 m", "column_width": "0.25 m", "beam_height": "0.30 m",
         "beam_width": "0.25 m", "density": "2500 kg/m^3",
@@ -167,7 +167,7 @@ def test_a_frame_of_members_is_changed_by_its_measures():
 
 @pytest.mark.parametrize("kind", KINDS)
 class TestConstructor:
-    def test_it_has_every_parameter_by_name(self, kind):
+    def test_has_every_declared_parameter_as_keyword(self, kind):
         arguments = dict(inspect.signature(kind).parameters)
         if kind is rf.Block:  # stands for two of them
             assert arguments.pop("centre_of_mass").default is None
@@ -177,14 +177,14 @@ class TestConstructor:
             required = kind._declared[name].default is REQUIRED
             assert (argument.default is inspect.Parameter.empty) == required
 
-    def test_python_says_what_does_not_fit(self, kind):
+    def test_raises_type_error_for_wrong_arguments(self, kind):
         name = kind.__name__
         with pytest.raises(TypeError, match=rf"^{name}\.__init__\(\) got an unexpected .*'odd'"):
             kind(**dict.fromkeys(kind._declared, "1 m"), odd="2 m")
         with pytest.raises(TypeError, match=rf"^{name}\.__init__\(\) takes 1 positional"):
             kind("2 m")
 
-    def test_its_docstring_tells_every_parameter(self, kind):
+    def test_docstring_documents_every_parameter(self, kind):
         text = inspect.getdoc(kind)
         assert text.count("Parameters\n----------") == 1
         for name, declared in kind._declared.items():
@@ -195,13 +195,13 @@ class TestConstructor:
 
 
 @pytest.mark.parametrize("part", [PADS, SOIL, CAP, BLOCK, MEMBER, FRAME, TILTED])
-def test_only_public_names_are_shown(part):
+def test_dir_lists_only_public_names(part):
     shown = dir(part)
     assert not [name for name in shown if name.startswith("_")]
     assert set(part._declared) | {"replace", "to_dict", "si", "given"} <= set(shown)
 
 
-def test_values_do_not_lead_back_in():
+def test_value_containers_are_immutable():
     with pytest.raises(AttributeError, match="immutable"):
         PADS.given.stiffness = 1.0
     with pytest.raises(AttributeError, match="immutable"):
@@ -216,7 +216,7 @@ def pickled(part):
 
 
 class TestOwnParts:
-    def test_a_class_that_only_declares(self):
+    def test_class_with_declarations_only(self):
         stop = own.Stop(strength="3 kN", gap="2 mm")
         assert stop.strength.m_as("kN") == pytest.approx(3.0)
         assert stop.gap.m_as("mm") == pytest.approx(2.0)
@@ -228,7 +228,7 @@ class TestOwnParts:
         assert str(inspect.signature(own.Stop)).startswith("(*, gap:")
         assert "Force at which it breaks; greater than zero [N]." in inspect.getdoc(own.Stop)
 
-    def test_a_class_with_one_parameter_more(self):
+    def test_subclass_with_an_additional_parameter(self):
         pads = own.BreakingPads(frequency_ratio=20, damping_ratio=0.1, strength="80 kN")
         assert isinstance(pads, rf.TwoSpringSupport)
         assert pads.strength.m_as("kN") == pytest.approx(80.0)
@@ -245,7 +245,7 @@ class TestOwnParts:
             own.BreakingPads(frequency_ratio=20, damping_ratio=5, strength="80 kN")
 
     @pytest.mark.parametrize("twin", [copy.copy, copy.deepcopy, pickled])
-    def test_they_survive_what_other_parts_do(self, twin):
+    def test_own_parts_survive_copy_pickle_and_dict_round_trip(self, twin):
         for part in (
             own.Stop(strength="3 kN", gap="2 mm"),
             own.BreakingPads(frequency_ratio=20, damping_ratio=0.1, strength="80 kN"),
@@ -261,33 +261,33 @@ class TestOwnParts:
         assert own.HeavyBlock(**size) != rf.Block(**size)
         assert rf.Block(**size) != own.HeavyBlock(**size)
 
-    def test_what_no_model_knows_is_not_simulated_as_something_else(self):
+    def test_part_with_unknown_parameter_is_not_simulated(self):
         pads = own.BreakingPads(frequency_ratio=20, damping_ratio=0.1, strength="80 kN")
         with pytest.raises(AssemblyError, match="BreakingPads adds strength to TwoSpringSupport"):
             rf.System(BLOCK, pads)
 
-    def test_a_parameter_is_not_taken_for_a_property_of_its_name(self):
+    def test_parameter_overriding_a_property_is_not_simulated(self):
         rounded = own.RoundedBlock(width="2 m", height="8 m", mass="50 t", radius="5 mm")
         with pytest.raises(AssemblyError, match="RoundedBlock adds radius to Block"):
             rf.System(rounded)
 
-    def test_a_part_that_adds_nothing_is_simulated_as_its_parent(self):
+    def test_part_without_additions_is_simulated_as_its_parent(self):
         heavy = own.HeavyBlock(width="2 m", height="8 m", mass="50 t")
         assert rf.System(heavy, PADS).setting == rf.System(BLOCK, PADS).setting
 
-    def test_a_system_with_one_comes_back(self):
+    def test_system_with_own_part_survives_dict_round_trip(self):
         system = rf.System(own.HeavyBlock(width="2 m", height="8 m", mass="50 t"))
         again = rf.System.from_dict(system.to_dict())
         assert again == system
         assert type(again.parts.block) is own.HeavyBlock
 
-    def test_two_classes_of_one_name_are_told_apart(self):
+    def test_second_class_of_the_same_name_is_refused(self):
         with pytest.raises(ComponentError, match=r"unit\.own_parts\.Stop; .* rename one of them"):
             type("Stop", (Component,), {"__module__": "elsewhere", "__qualname__": "Stop"})
         found = component_from_dict({"type": "Stop", "gap": "1 mm", "strength": "1 kN"})
         assert type(found) is own.Stop
 
-    def test_a_class_may_be_defined_anew(self):
+    def test_class_may_be_redefined_in_its_module(self):
         made = [
             type("Redefined", (Component,), {"__module__": "notebook", "__qualname__": "Redefined"})
             for _ in range(2)
@@ -299,12 +299,12 @@ class TestOwnParts:
         with pytest.raises(ComponentError, match="'si' is reserved"):
             type("Strange", (Component,), {"si": Ratio(doc="Nothing.")})
 
-    def test_an_unknown_class_is_said(self):
+    def test_unknown_class_raises(self):
         with pytest.raises(SchemaError, match="in a module that has been imported"):
             component_from_dict({"type": "Unheard"})
 
 
-def test_numbers_are_the_same_through_all_ways():
+def test_numbers_are_preserved_exactly():
     angle = 0.1 + 1e-17
     state = rf.InitialState(rotation=f"{angle!r} rad")
     assert state.si.rotation == angle

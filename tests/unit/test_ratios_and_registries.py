@@ -59,7 +59,7 @@ def test_a_ratio_may_be_a_quantity_of_any_registry():
         (make_pulse, "cycles"),
     ],
 )
-def test_what_is_no_ratio_is_refused(maker, name):
+def test_invalid_ratios_are_refused(maker, name):
     texts = ["0.1 rad", "5 deg", "1 m", "1 Hz", "x", ""]
     for bad in [*texts, True, np.True_, [0.1], np.array([0.1]), 1 + 0j]:
         message = refusal(maker, **{name: bad})
@@ -78,7 +78,7 @@ def test_a_ratio_must_be_finite(name):
 # the registry that all libraries share -----------------------------------------------------
 
 
-def test_the_application_registry_is_left_alone():
+def test_application_registry_is_not_modified():
     registry = pint.get_application_registry()
     units = set(registry._units)
     settings = (registry.formatter.default_format, registry.autoconvert_offset_to_baseunit)
@@ -101,7 +101,7 @@ def restored_registry():
     pint.set_application_registry(held)
 
 
-def test_swapping_the_registry_mid_session_does_no_harm(restored_registry):
+def test_registry_can_be_replaced_during_a_session(restored_registry):
     before = make_block()
     width = before.width
     pint.set_application_registry(FOREIGN)
@@ -117,7 +117,7 @@ def test_swapping_the_registry_mid_session_does_no_harm(restored_registry):
 
 
 @pytest.mark.wide
-def test_a_registry_of_another_library_does_no_harm():
+def test_registry_of_another_library_is_supported():
     code = """
 import rockframe as rf
 before = rf.Block(width="2 m", height="8 m", mass="50 t")
@@ -156,7 +156,7 @@ assert rf.System.from_dataset(response).parts.block == after
         *(pytest.param(one, marks=pytest.mark.long) for one in ("m", "dm", "Mm")),
     ],
 )
-def test_columns_of_floats_are_converted_as_each_of_them(unit):
+def test_column_conversion_equals_scalar_conversion(unit):
     rng = np.random.default_rng(2)
     numbers = [
         *rng.uniform(-10.0, 10.0, 300).tolist(),
@@ -175,7 +175,7 @@ def test_columns_of_floats_are_converted_as_each_of_them(unit):
 LONG = {"length": "mm", "stiffness": "kN/mm"}
 
 
-def test_sentences_are_told_in_the_units_of_the_reader():
+def test_sentences_are_converted_to_display_units():
     units = display_units({"acceleration": "g", "length": "mm"}, owner="a figure")
     told = units.convert_text(
         "from 9.80665 to 19.6133 m s^-2, 0.02 m, -1e-3 m; 2 m s^-1, 3 m s^-2."
@@ -197,7 +197,7 @@ def test_sentences_are_told_in_the_units_of_the_reader():
     assert display_units(None, owner="a figure").convert_text("4 m") == "4 m"
 
 
-def test_two_values_of_which_one_is_a_quantity_are_no_number_and_its_unit():
+def test_pair_with_a_quantity_is_not_read_as_number_and_unit():
     metre = pint.Quantity(1.0, "m")
     assert to_si_values([metre, "20 cm"], LENGTH, owner="here", name="width") == [1.0, 0.2]
     assert to_si_values([[1, 2], "cm"], LENGTH, owner="here", name="width") == [0.01, 0.02]
@@ -223,7 +223,7 @@ QUANTITY = pint.get_application_registry().Quantity
         (xr.DataArray(QUANTITY(np.array([50.0, 70.0]), "cm")), "m", None),
     ],
 )
-def test_a_unit_beside_an_array_that_has_another_is_refused(values, unit, read):
+def test_conflicting_unit_of_an_array_is_refused(values, unit, read):
     if read is None:
         with pytest.raises(UnitsError, match=r"x has the unit '\w+', but 'm' is given with it"):
             to_si_values((values, unit), LENGTH, owner="one", name="x")
@@ -231,7 +231,7 @@ def test_a_unit_beside_an_array_that_has_another_is_refused(values, unit, read):
         assert to_si_values((values, unit), LENGTH, owner="one", name="x") == read
 
 
-def test_accelerations_and_times_have_one_unit():
+def test_conflicting_units_of_accelerations_and_times_are_refused():
     array = xr.DataArray([0.0, 1.0], dims="x", attrs={"units": "m s-2"})
     for given in (array, (array, "m/s^2")):
         assert rf.GroundMotion.from_arrays(given, "0.01 s").si.peak == 1.0
@@ -243,7 +243,7 @@ def test_accelerations_and_times_have_one_unit():
         rf.GroundMotion.from_times((times, "s"), array, "0.01 s")
 
 
-def test_a_masked_value_is_not_zero():
+def test_masked_values_are_refused():
     held = np.ma.array([0.5, 0.7], mask=[False, True])
     with pytest.raises(ComponentError, match="x has masked values; fill them in first"):
         to_si_values((held, "m"), LENGTH, owner="one", name="x")
@@ -253,7 +253,7 @@ def test_a_masked_value_is_not_zero():
     ]
 
 
-def test_degrees_follow_a_number_without_a_space_everywhere():
+def test_degree_sign_has_no_preceding_space():
     """ISO 80000-1: a space before every unit, but none before the sign of degrees."""
     assert [unit_suffix(unit) for unit in ("1", "", "m s^-1", "°", "° s^-1")] == [
         "", "", " m s^-1", "°", "° s^-1"]  # fmt: skip

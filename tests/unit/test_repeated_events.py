@@ -41,11 +41,11 @@ def test_an_event_that_repeats_itself_is_chatter():
     ],
     ids=["the first one", "later", "from another state", "to another mode"],
 )
-def test_any_other_event_is_not(rows, modes):
+def test_other_events_are_not_chatter(rows, modes):
     assert recorded(rows, modes) == Status.COMPLETED
 
 
-def test_steps_at_rest_leave_the_largest_share_of_a_lower_body_to_the_last_bit():
+def test_steps_at_rest_do_not_change_peak_rotation_ratio():
     """However many outputs a run has, each of which ends such a step."""
     rows = [[0.2, 0.2, 1.0], [0.11, 0.39, 1.0]]  # of the highest body, and of a lower one
     rest = {name: np.zeros(2) for name in ("state", "new_state", "slope", "new_slope")}

@@ -60,7 +60,7 @@ def response():
     return system.simulate(pulse, free_vibration="5 s")
 
 
-def test_a_report_has_all_and_asks_for_nothing(response, tmp_path):
+def test_report_is_complete_and_self_contained(response, tmp_path):
     path = rf.report(response, tmp_path / "r.html", title="Tower & bell")
     text = path.read_text(encoding="utf-8")
     page = Page(text)
@@ -89,7 +89,7 @@ def test_a_report_has_all_and_asks_for_nothing(response, tmp_path):
     assert "springs of the bed" not in words  # there is no soil
 
 
-def test_what_cannot_be_had_is_said(response, tmp_path):
+def test_report_states_missing_information(response, tmp_path):
     bare = rf.report(response, tmp_path / "bare.html", certify=False).read_text()
     assert "No certificate" in bare
     record = rf.GroundMotion.from_arrays(([0.0, 3.0, -3.0, 0.0] * 40, "m/s^2"), "0.01 s")
@@ -102,7 +102,7 @@ def test_what_cannot_be_had_is_said(response, tmp_path):
     assert "does not describe its system" in rf.report(unknown, tmp_path / "u.html").read_text()
 
 
-def test_a_run_by_a_record_has_its_certificate_though_it_overturned(tmp_path):
+def test_overturned_run_under_a_record_is_certified_from_file(tmp_path):
     system = rf.System(rf.Block(width="0.8 m", height="3.2 m", mass="5.5 t"))
     shaking = 8.0 * np.sin(np.linspace(0.0, 30.0, 400)) * np.linspace(0.0, 1.0, 400)
     level = rf.GroundMotion.from_arrays((shaking, "m/s^2"), "0.02 s", name="a record")
@@ -163,7 +163,7 @@ def test_runs_that_overturned_under_a_record_are_certified(parts, given, tmp_pat
     assert "No certificate" not in words
 
 
-def test_a_run_of_coarse_samples_asks_for_its_motion(tmp_path):
+def test_report_of_a_coarsely_sampled_run_requests_its_motion(tmp_path):
     shaking = 9.0 * np.sin(np.linspace(0.0, 30.0, 400)) * np.linspace(0.2, 1.0, 400)
     record = rf.GroundMotion.from_arrays((shaking, "m/s^2"), "0.02 s", name="a record")
     coarse = rf.System(BLOCK, PADS).simulate(record, free_vibration="9 s", output_step="0.1 s")
@@ -189,7 +189,7 @@ SLIDING = {
 
 @pytest.mark.wide
 @pytest.mark.parametrize("name", SLIDING)
-def test_what_slid_is_said_first_of_runs_and_sweeps(name, tmp_path):
+def test_sliding_leads_the_verdict_of_runs_and_sweeps(name, tmp_path):
     system = rf.System(*SLIDING[name])
     pulse = rf.GroundMotion.sine_pulse("6 m/s^2", "1 Hz")
     run = system.simulate(pulse, free_vibration="3 s", output_step="0.02 s")
@@ -217,7 +217,7 @@ def test_what_slid_is_said_first_of_runs_and_sweeps(name, tmp_path):
 
 
 @pytest.mark.wide
-def test_what_overturned_after_it_slid_and_what_would_slide(tmp_path):
+def test_report_states_overturning_after_sliding_and_would_slide(tmp_path):
     slim = rf.Block(width="0.5 m", height="2 m", mass="1 t")
     pulse = rf.GroundMotion.sine_pulse("9 m/s^2", "0.5 Hz")
     run = rf.System(slim, rf.RigidGround(friction=0.3)).simulate(pulse)
@@ -242,7 +242,7 @@ def test_a_certificate_near_a_boundary_is_shown_as_such(response):
 
 
 @pytest.mark.parametrize("doubted", ["verdict_converged", "verdict_robust"])
-def test_a_certificate_holds_only_where_it_is_sure_in_every_way(response, doubted):
+def test_certificate_holds_only_if_converged_and_robust(response, doubted):
     told = response.assign(dict.fromkeys(("verdict_converged", "verdict_robust"), True))
     told.attrs["certificate"] = "The body stands."
     assert "the verdict holds" in "".join(sections.verdict_section(told, "", DisplayUnits()))
@@ -287,7 +287,7 @@ def words_of(path):
     return " ".join(page.text.split())
 
 
-def test_what_was_asked_for_is_shown_in_the_units_of_the_reader(tmp_path):
+def test_requested_outputs_are_reported_in_display_units(tmp_path):
     run = rf.System(BLOCK, PADS).simulate(
         SUITE["long"], outputs=("base_shear", "base_overturning_moment"),
         points={"bell": ("0 m", "2 m")},
@@ -303,7 +303,7 @@ def test_what_was_asked_for_is_shown_in_the_units_of_the_reader(tmp_path):
     assert f"largest absolute rotation {np.degrees(float(run.peak_rotation)):.4g}°" in words
 
 
-def test_the_parts_of_a_part_have_tables_of_their_own():
+def test_nested_parts_have_separate_tables():
     block = rf.Block(width="0.6 m", height="2 m", mass="500 kg")
     plinth = rf.Block(width="1 m", height="1 m", mass="900 kg")
     stack = rf.Stack(block, plinth, interfaces=[rf.RigidGround()], offsets=["1 cm"])
@@ -316,7 +316,7 @@ def test_the_parts_of_a_part_have_tables_of_their_own():
         assert "{" not in shown
 
 
-def test_a_report_says_whose_it_is_and_concludes(response, tmp_path):
+def test_report_contains_project_and_conclusion(response, tmp_path):
     path = rf.report(response, tmp_path / "r.html", certify=False, project=PROJECT)
     words = words_of(path)
     for said in ("Object Bell <tower>", "Checked by C. Rossi", "Date 2026-11-24",
@@ -335,7 +335,7 @@ def test_a_report_says_whose_it_is_and_concludes(response, tmp_path):
         rf.report(response, tmp_path / "x.html", units={"forces": "kN"})
 
 
-def test_a_sweep_has_all_its_cases_and_the_worst_in_full(tmp_path):
+def test_sweep_report_lists_all_cases_and_the_worst_in_full(tmp_path):
     forces = ("friction_demand", "base_shear")
     runs = rf.sweep(
         rf.System(BLOCK, PADS), motions=SUITE, scale=[0.5, 2.0], outputs=forces, output_step="5 ms"
@@ -370,7 +370,7 @@ def test_a_sweep_has_all_its_cases_and_the_worst_in_full(tmp_path):
 
 
 @pytest.mark.wide
-def test_a_sweep_shows_forces_and_slips_of_each_case_in_the_units_of_the_reader(tmp_path):
+def test_sweep_report_shows_forces_and_slips_in_display_units(tmp_path):
     rough = rf.TwoSpringSupport(frequency_ratio=20, damping_ratio=0.1, friction=0.25)
     tie = {"on": ("-0.3 m", "2 m"), "to": ("-1.3 m", "2 m"), "slack": "5 mm"}
     ties = [rf.Restrainer(**tie, stiffness=k, name=name)
@@ -407,11 +407,11 @@ def test_a_sweep_shows_forces_and_slips_of_each_case_in_the_units_of_the_reader(
     assert "slid, by" in words
 
 
-def test_what_tables_and_figures_choose_by_name_exists():
+def test_report_columns_exist_in_the_schema():
     assert {*cases.COLUMNS, *sections._DRAWN_HISTORIES} <= set(SCHEMA)
 
 
-def test_of_many_cases_the_worst_are_listed(tmp_path, monkeypatch):
+def test_report_lists_the_worst_of_many_cases(tmp_path, monkeypatch):
     monkeypatch.setattr(cases, "MAX_ROWS", 3)
     runs = rf.sweep(rf.System(BLOCK), SUITE["long"], scale=[0.4, 0.7, 2.0, 3.0, 4.0])
     words = words_of(rf.report(runs, tmp_path / "r.html"))
@@ -462,7 +462,7 @@ def test_a_dynamic_analysis_has_its_capacities(tmp_path, monkeypatch):
     assert f"flip count overturning {least} " in words
 
 
-def test_the_motion_that_a_result_does_not_hold_can_be_handed_in(tmp_path):
+def test_missing_motion_can_be_passed_to_the_report(tmp_path):
     record = rf.GroundMotion.from_arrays(([0.0, 3.0, -3.0, 0.0] * 40, "m/s^2"), "0.01 s")
     run = rf.System(BLOCK).simulate(record, outputs=None)
     words = words_of(rf.report(run, tmp_path / "r.html", motion=record))
@@ -472,14 +472,14 @@ def test_the_motion_that_a_result_does_not_hold_can_be_handed_in(tmp_path):
         rf.report(run, tmp_path / "x.html", motion=record.scaled(2.0))
 
 
-def test_a_run_without_a_motion_takes_none(tmp_path):
+def test_report_refuses_a_motion_for_a_run_without_one(tmp_path):
     system = rf.System(rf.Block(width="0.8 m", height="3.2 m", mass="5.5 t"))
     run = system.simulate(duration="2 s", initial=rf.InitialState(rotation="5 deg"))
     with pytest.raises(SchemaError, match=r"not those of the run \(none\)"):
         rf.report(run, tmp_path / "report.html", motion=rf.GroundMotion.sine_pulse())
 
 
-def test_a_certificate_of_another_run_is_none(tmp_path):
+def test_certificate_of_a_different_run_is_rejected(tmp_path):
     """Of runs that were joined nobody knows the motions: another one has the same verdict."""
     system = rf.System(rf.Block(width="0.8 m", height="3.2 m", mass="5.5 t"))
     pulses = [rf.GroundMotion.sine_pulse(f"{peak} m/s^2", "2 Hz") for peak in (3.0, 4.0)]
@@ -489,7 +489,7 @@ def test_a_certificate_of_another_run_is_none(tmp_path):
         assert words in rf.report(joined.isel(run=place), path, motion=pulses[0]).read_text("utf-8")
 
 
-def test_a_browser_prints_it_on_whole_sheets(response, tmp_path):
+def test_browser_prints_report_on_a4(response, tmp_path):
     browser = which("chromium") or which("google-chrome")
     if browser is None:
         pytest.skip("neither chromium nor google-chrome is installed")
@@ -525,7 +525,7 @@ def test_tables_with_long_names_stay_on_the_sheet(tmp_path):
     assert {*last} <= {word for right, word in words if float(right) < 595.0 - 40.0}
 
 
-def test_a_mean_tells_of_how_many_cases_it_is_and_a_demand_without_end_is_infinite(tmp_path):
+def test_report_mean_states_case_count_and_infinity_is_written_out(tmp_path):
     runs = rf.sweep(rf.System(BLOCK), SUITE, scale=[0.1, 2.0])
     times = runs.first_uplift_time.to_numpy()
     known = times[np.isfinite(times)]
@@ -535,7 +535,7 @@ def test_a_mean_tells_of_how_many_cases_it_is_and_a_demand_without_end_is_infini
     assert format_value(xr.DataArray(np.inf)) == "infinite"
 
 
-def test_measures_say_of_which_component_and_threshold_they_are(tmp_path):
+def test_measures_state_component_and_threshold(tmp_path):
     across = SUITE["long"]
     for motion, words in (
         (across, "Measures greatest"),
@@ -548,7 +548,7 @@ def test_measures_say_of_which_component_and_threshold_they_are(tmp_path):
         assert "last exceedance of 0.05 g" in told
 
 
-def test_limits_refer_to_a_certificate_only_where_the_page_has_one(tmp_path):
+def test_limitations_mention_the_certificate_only_if_present(tmp_path):
     system, pulse = rf.System(BLOCK), rf.GroundMotion.sine_pulse("-3 m/s^2", "2 Hz")
 
     def limits(found, **given):
@@ -567,12 +567,12 @@ def test_limits_refer_to_a_certificate_only_where_the_page_has_one(tmp_path):
         assert "The verdict on a case holds only if" in told
 
 
-def test_the_limits_are_those_of_the_manual():
+def test_report_limitations_match_the_manual():
     left_out = read("theory/validity.md").split("## Omitted effects")[1].split("\n## ")[0]
     assert re.findall(r"^(\w.*)\n: ", left_out, re.MULTILINE) == [one.title for one in LIMITS]
 
 
-def test_a_case_that_was_picked_out_of_a_sweep_has_its_own_system(tmp_path):
+def test_report_of_a_sweep_case_shows_its_own_system(tmp_path):
     system = rf.System(rf.Block(width="0.5 m", height="2 m", mass="400 kg"))
     pulse = rf.GroundMotion.sine_pulse("4 m/s^2", "1 Hz")
     runs = rf.sweep(system, pulse, width=["0.5 m", "0.62 m"], scale=[1.0, 1.5], progress=False)
@@ -587,7 +587,7 @@ def test_a_case_that_was_picked_out_of_a_sweep_has_its_own_system(tmp_path):
     assert rf.System.from_dataset(runs) == system
 
 
-def test_cases_that_fell_flat_are_said_to_have_overturned(tmp_path):
+def test_toppled_cases_are_reported_as_overturned(tmp_path):
     pulse = rf.GroundMotion.sine_pulse("6 m/s^2", "0.5 Hz")
     runs = rf.sweep(rf.System(BLOCK), pulse, scale=[0.1, 1.0], overturning="continue",
                     free_vibration="5 s")  # fmt: skip

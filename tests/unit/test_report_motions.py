@@ -51,7 +51,7 @@ def rows_of(path, section):
     return [re.findall(r"<t[dh][^>]*>(.*?)</t[dh]>", line) for line in lines]
 
 
-def test_motions_that_fit_a_target_carry_it(suite):
+def test_scaled_suite_carries_its_target(suite):
     seconds = np.geomspace(0.1, 4.0, 40)
     with pytest.warns(RecordWarning, match="no motion has a vertical component"):
         level = suite.with_verticals()
@@ -69,7 +69,7 @@ def test_motions_that_fit_a_target_carry_it(suite):
     assert near.target.at(["0.7 s"]) == TARGET.at(["0.7 s"])
 
 
-def test_records_stand_beside_their_target(runs, suite, tmp_path):
+def test_report_compares_records_with_their_target(runs, suite, tmp_path):
     path = rf.report(runs, tmp_path / "r.html", motions=suite, units={"acceleration": "g_0"})
     words = text_of(path)
     assert TARGET.name.endswith("ground B, 1.961 m/s^2")
@@ -95,7 +95,7 @@ def test_records_stand_beside_their_target(runs, suite, tmp_path):
 
 
 @pytest.mark.wide
-def test_a_target_is_given_in_three_ways(runs, suite, tmp_path):
+def test_report_target_is_accepted_in_three_forms(runs, suite, tmp_path):
     raw = rf.MotionSuite(dict(suite))
     found = raw.scaling_to(TARGET, periods=["0.5 s", "1 s", "2 s"], bounds=None)
     path = tmp_path / "r.html"
@@ -123,7 +123,7 @@ def test_a_target_is_given_in_three_ways(runs, suite, tmp_path):
 
 
 @pytest.mark.long
-def test_records_of_a_study_from_a_file_are_handed_in(suite, tmp_path, monkeypatch):
+def test_records_of_a_reopened_study_can_be_passed_to_the_report(suite, tmp_path, monkeypatch):
     gravity = ["9.8 m/s^2"]
     runs = rf.sweep(BLOCK, motions=suite, gravity=gravity, accuracy="fast", store=tmp_path / "kept")
     runs.to_netcdf(tmp_path / "runs.nc")
@@ -182,13 +182,13 @@ def test_a_run_has_its_record_and_its_target(suite, tmp_path):
         assert said in words, said
 
 
-def test_joined_runs_take_the_motions_that_are_given(suite, tmp_path):
+def test_report_of_joined_runs_accepts_motions(suite, tmp_path):
     runs = rf.concat([BLOCK.simulate(one, outputs=None) for one in suite.values()], "motion",
                      list(suite))  # fmt: skip
     assert "Sturno 2" in text_of(rf.report(runs, tmp_path / "r.html", motions=suite))
 
 
-def test_columns_of_records_are_those_of_suites():
+def test_record_columns_exist_in_the_schema():
     assert set(in_reports.RECORD_COLUMNS) <= set(SCHEMA)
 
 
@@ -197,7 +197,7 @@ def check():
     return rf.codes.circolare_2019(BLOCK, rf.GroundMotion.sine_pulse("1 m/s^2", "1 Hz"))
 
 
-def test_what_a_code_says_stands_beside_the_motion(check, tmp_path):
+def test_report_includes_code_checks(check, tmp_path):
     run = BLOCK.simulate(rf.GroundMotion.sine_pulse("1 m/s^2", "1 Hz"))
     cabinet = rf.codes.asce_7_22(rf.Block(width="0.6 m", height="1.8 m", mass="300 kg"),
                                  spectral_acceleration=1.0)  # fmt: skip
@@ -224,7 +224,7 @@ def test_what_a_code_says_stands_beside_the_motion(check, tmp_path):
             rf.report(run, path, checks=wrong)
 
 
-def test_a_study_has_its_checks_too(runs, check, tmp_path):
+def test_study_report_includes_code_checks(runs, check, tmp_path):
     words = text_of(rf.report(runs, tmp_path / "r.html", checks=check))
     above = words.split("Cases")[0]
     assert "No case overturned" in above

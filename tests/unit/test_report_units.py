@@ -44,12 +44,12 @@ def left_in_si(words):
     return [words[max(0, one.start() - 30) : one.end() + 20] for one in SI.finditer(words)]
 
 
-def test_what_is_left_is_found():
+def test_helper_finds_si_units_left_in_text():
     assert len(left_in_si("0.6 m wide, 3 m s⁻², 4 N m, 5 N/m; '2 kg'")) == 5
     assert left_in_si("3 mm, 5 kN m, 2 s, 4 N s/m, 5 kg m², 3 months") == []
 
 
-def test_a_run_that_slides_is_told_in_units_of_the_reader(tmp_path):
+def test_report_of_a_sliding_run_uses_display_units(tmp_path):
     pads = rf.TwoSpringSupport(frequency_ratio=20, damping_ratio=0.1, friction=0.2)
     tie = rf.Restrainer(on=("-0.3 m", "2 m"), to=("-1 m", "2 m"), stiffness="20 kN/m", slack="1 cm")
     run = rf.System(BLOCK, pads, tie).simulate(PULSE, outputs=("base_shear", "energy"))
@@ -64,7 +64,7 @@ def test_a_run_that_slides_is_told_in_units_of_the_reader(tmp_path):
     assert len(left_in_si(words_of(rf.report(run, tmp_path / "r.html", certify=False)))) > 20
 
 
-def test_checks_by_codes_are_told_in_units_of_the_reader(tmp_path):
+def test_code_checks_use_display_units(tmp_path):
     demands = {"limit_state": "SLD", "elastic_period": "0.2 s"}
     spectrum = rf.TargetSpectrum.eurocode_8("0.25 g_0", "B")
     checks = [
@@ -91,7 +91,7 @@ def test_checks_by_codes_are_told_in_units_of_the_reader(tmp_path):
         checks[0].report(tmp_path / "c.html", units={"weight": "kN"})
 
 
-def test_cases_are_told_in_units_of_the_reader(tmp_path):
+def test_sweep_report_uses_display_units(tmp_path):
     system = rf.System(BLOCK, rf.RigidGround(friction=0.15))
     runs = rf.sweep(system, PULSE, width=["0.6 m", "0.7 m"], progress=False)
     target = rf.TargetSpectrum.eurocode_8("0.25 g_0", "B")
@@ -114,7 +114,7 @@ def test_titles_of_figures_follow_the_units(tmp_path):
 
 
 @pytest.mark.parametrize("unit", ["gal", "kN", "quux"])
-def test_a_wrong_unit_is_told_as_it_was_typed(unit):
+def test_wrong_unit_is_quoted_as_typed(unit):
     with pytest.raises(UnitsError) as caught:
         display_units({"acceleration": unit}, owner="report")
     words = str(caught.value)

@@ -41,7 +41,7 @@ def imbalance(found: xr.Dataset) -> float:
     return float((total.max() - total.min()) / abs(found.input_energy).max())
 
 
-def test_what_is_given_comes_back():
+def test_restrainers_survive_dict_round_trip():
     system = rf.System(BLOCK, PADS, TIE, PRELOADED)
     assert rf.System.from_dict(system.to_dict()) == system
     assert system.parts.links == (TIE, PRELOADED)
@@ -66,7 +66,7 @@ def test_what_is_given_comes_back():
         ({"on_body": 0}, "must be a whole number from 1 on"),
     ],
 )
-def test_what_makes_no_tie_is_refused(changes, words):
+def test_invalid_restrainer_is_refused(changes, words):
     with pytest.raises(ComponentError, match=words):
         TIE.replace(**changes)
 
@@ -95,7 +95,7 @@ def test_what_makes_no_tie_is_refused(changes, words):
         ((BLOCK, TIE.replace(to=("-1e200 m", "3 m"))), "larger than a computer's numbers"),
     ],
 )
-def test_what_makes_no_scene_is_refused(parts, words):
+def test_invalid_scene_with_restrainers_is_refused(parts, words):
     with pytest.raises(AssemblyError, match=words):
         rf.System(*parts)
 
@@ -105,7 +105,7 @@ def test_what_makes_no_scene_is_refused(parts, words):
     [TIE.replace(on=("-0.5 m", "4.1 m")), TIE.replace(on=("-5 m", "3 m")),
      rf.Load(at=("0 m", "-0.1 m"), moving_mass="1 t")],
 )  # fmt: skip
-def test_a_point_outside_of_its_body_is_told(link):
+def test_point_outside_its_body_warns(link):
     with pytest.warns(ModelWarning, match="outside of body 1, 1 m wide at its base and 4 m high"):
         rf.System(BLOCK, link)
 
@@ -128,7 +128,7 @@ def test_a_run_shows_each_restrainer(tmp_path):
         assert rf.System.from_dataset(kept).parts.links == (TIE, PRELOADED)
 
 
-def test_the_mirror_image_moves_as_the_mirror_image():
+def test_mirrored_restrainers_give_the_mirrored_response():
     ties = (TIE.replace(brittle=False), PRELOADED)
     found = run(BLOCK, PADS, *ties)
     other = run(BLOCK, PADS, *map(mirrored, ties), motion=PULSE.scaled(-1.0))
@@ -136,7 +136,7 @@ def test_the_mirror_image_moves_as_the_mirror_image():
     np.testing.assert_allclose(found.restrainer_force, other.restrainer_force, atol=1e-3)
 
 
-def test_on_rigid_ground_a_tie_that_never_pulls_changes_nothing():
+def test_slack_tie_on_rigid_ground_has_no_effect():
     far = TIE.replace(slack="1 km")
     options = {"motion": PULSE.scaled(0.6), "accuracy": "reference", "outputs": ("energy",)}
     free, found = run(BLOCK, **options), run(BLOCK, far, **options)
@@ -145,7 +145,7 @@ def test_on_rigid_ground_a_tie_that_never_pulls_changes_nothing():
     assert imbalance(found) < 1e-8
 
 
-def test_on_rigid_ground_the_mirror_image_moves_as_the_mirror_image():
+def test_mirrored_restrainers_on_rigid_ground_give_the_mirrored_response():
     ties = (TIE.replace(brittle=False), TIE.replace(on=("0.2 m", "4 m"), name="top"))
     found = run(BLOCK, *ties)
     other = run(BLOCK, *map(mirrored, ties), motion=PULSE.scaled(-1.0))
@@ -155,7 +155,7 @@ def test_on_rigid_ground_the_mirror_image_moves_as_the_mirror_image():
     assert int(yielded.sum()) > 0
 
 
-def test_on_rigid_ground_ties_a_million_times_stiffer_than_the_weight_hold():
+def test_very_stiff_ties_on_rigid_ground_hold_the_block():
     ties = [
         rf.Restrainer(on=(f"{x} m", "0 m"), to=(f"{x} m", "0 m"), stiffness="40 GN/m")
         for x in (-0.5, 0.5)
@@ -172,7 +172,7 @@ def test_on_rigid_ground_ties_a_million_times_stiffer_than_the_weight_hold():
     np.testing.assert_array_equal(again.rotation, found.rotation)
 
 
-def test_ties_on_rigid_ground_add_their_closed_forms():
+def test_moments_of_ties_on_rigid_ground_match_closed_forms():
     b, k, z = 0.5, 2e5, 3.0
     angles = np.array([0.02, 0.1, 0.2])
     free = rf.System(BLOCK).moment_rotation((angles, "rad"))
@@ -190,7 +190,7 @@ def test_ties_on_rigid_ground_add_their_closed_forms():
     np.testing.assert_allclose(tied.restoring_moment - free.restoring_moment, moment, rtol=1e-6)
 
 
-def test_a_preload_raises_the_acceleration_at_which_a_block_uplifts():
+def test_preload_raises_the_uplift_acceleration():
     half = [PRELOADED, mirrored(PRELOADED).replace(name="left")]
     down = [
         one.replace(on=(one.on[0], "1 m"), to=(one.on[0], "-2 m"), preload="5 kN") for one in half
@@ -210,7 +210,7 @@ def test_a_preload_raises_the_acceleration_at_which_a_block_uplifts():
     assert system.setting.overturning_energy > rf.System(BLOCK).setting.overturning_energy
 
 
-def test_a_tie_breaks_at_an_elongation_as_at_the_force_there():
+def test_breaking_elongation_is_equivalent_to_strength():
     far = TIE.replace(strength=None, breaking_elongation="30 mm")  # 5 kN at 200 kN/m
     found, other = run(BLOCK, far), run(BLOCK, TIE)
     np.testing.assert_allclose(found.rotation, other.rotation, rtol=0, atol=1e-12)
@@ -240,7 +240,7 @@ def test_a_stack_on_rigid_bases_is_tied(base):
     assert float(tied.restoring_moment[0]) > float(free.restoring_moment[0])
 
 
-def test_a_corner_tie_adds_its_closed_form():
+def test_moment_of_a_corner_tie_matches_closed_form():
     tie = rf.Restrainer(on=("-0.5 m", "0 m"), to=("-0.5 m", "0 m"), stiffness="100 kN/m")
     stiff = rf.TwoSpringSupport(frequency_ratio=3000, damping_ratio=0.1)
     angles = ([0.05, 0.1, 0.2], "rad")
@@ -250,7 +250,7 @@ def test_a_corner_tie_adds_its_closed_form():
     np.testing.assert_allclose(tied - free, expected, rtol=2e-3)
 
 
-def test_a_horizontal_tie_adds_its_closed_form():
+def test_moment_of_a_horizontal_tie_matches_closed_form():
     height, stiffness = 3.0, 2e5
     tie = rf.Restrainer(on=("-0.5 m", "3 m"), to=("-1e6 m", "3 m"), stiffness=f"{stiffness} N/m")
     stiff = rf.TwoSpringSupport(frequency_ratio=3000, damping_ratio=0.1)
@@ -274,7 +274,7 @@ def test_a_tie_changes_rest_frequencies_and_the_energy_to_overturn():
     assert several.setting.overturning_energy > free.setting.overturning_energy
 
 
-def test_frequencies_are_those_of_a_small_run():
+def test_frequencies_match_small_amplitude_simulation():
     tied = rf.System(BLOCK, PADS, PRELOADED, mirrored(PRELOADED))
     start = rf.InitialState(rotation="1e-5 rad")
     found = tied.simulate(duration="2 s", initial=start, output_step="1 ms")
@@ -309,7 +309,7 @@ def test_sweeps_name_the_parameters_of_ties():
     assert float(runs.overturning_time.std()) > 0.0
 
 
-def test_axes_name_ties_in_one_word_and_take_truth_values(tmp_path):
+def test_restrainer_axes_use_identifiers_and_accept_booleans(tmp_path):
     upper = TIE.replace(name="tie, above", strength="0.5 kN", damping=None)
     system = rf.System(BLOCK, upper, TIE.replace(name=None))
     axes = {"tie__above.brittle": [True, False], "restrainer_2.stiffness": ["1 MN/m", "2 MN/m"]}
@@ -333,14 +333,14 @@ def test_axes_name_ties_in_one_word_and_take_truth_values(tmp_path):
     [({"slack": "0 m"}, {}), ({"strength": "1e15 N"}, {}), ({"damping": "0 N s/m"}, {})],
     ids=["no slack", "strength without end", "no damping"],
 )
-def test_what_is_none_or_without_end_is_as_if_not_given(base, one, other):
+def test_zero_or_infinite_restrainer_values_equal_omitted_ones(base, one, other):
     tie = TIE.replace(slack=None, strength=None)
     runs = [run(BLOCK, base, tie.replace(**given)) for given in (one, other)]
     np.testing.assert_allclose(runs[0].rotation, runs[1].rotation, rtol=0.0, atol=1e-13)
     assert list(runs[0].event_kind) == list(runs[1].event_kind)
 
 
-def test_on_pads_a_tie_that_never_pulls_changes_nothing():
+def test_slack_tie_on_pads_has_no_effect():
     slack = rf.System(BLOCK, PADS, TIE.replace(slack="1 km", strength=None))
     found, alone = (one.simulate(PULSE) for one in (slack, rf.System(BLOCK, PADS)))
     peak = float(np.abs(alone.rotation).max())
@@ -349,7 +349,7 @@ def test_on_pads_a_tie_that_never_pulls_changes_nothing():
     assert not (found.restrainer_force != 0.0).any()
 
 
-def test_ever_smaller_impacts_end_at_rest_while_ties_pull():
+def test_decaying_impacts_with_ties_end_at_rest():
     """What bears is looked for where the body is, not where what holds it is."""
     block = rf.Block(width="0.75 m", height="1.04 m", mass="1556 kg")
     ties = [
@@ -370,7 +370,7 @@ def test_ever_smaller_impacts_end_at_rest_while_ties_pull():
 
 
 @pytest.mark.filterwarnings("ignore::rockframe.errors.ModelWarning")
-def test_a_corner_that_does_not_press_is_held_beside_ties():
+def test_unloaded_corner_is_held_with_ties():
     """It would come back at once if it were let go, by its acceleration where it is."""
     width, height = 1.49, 3.32
     block = rf.Block(width=f"{width} m", height=f"{height} m", mass="9880 kg")
@@ -386,7 +386,7 @@ def test_a_corner_that_does_not_press_is_held_beside_ties():
     assert len(found.event_kind) < 300
 
 
-def test_ties_add_what_they_store_to_the_energy_that_overturns_a_mixed_stack():
+def test_ties_add_stored_energy_to_overturning_energy_of_a_mixed_stack():
     upper, lower = (rf.Block(width=w, height="2 m", mass="2 t") for w in ("0.6 m", "1.2 m"))
     stack = rf.Stack(upper, lower, interfaces=[rf.RigidGround()])
     tie = rf.Restrainer(
@@ -446,7 +446,7 @@ def test_ties_add_what_they_store_to_the_energy_that_overturns_a_mixed_stack():
         pytest.param(17543, marks=pytest.mark.long),
     ],
 )
-def test_changes_of_contact_beside_ties_come_to_an_end(number):
+def test_contact_changes_with_ties_terminate(number):
     _, ended, _ = run_drawn(number)
     assert ended in ("completed", "overturned", "toppled")
 
@@ -465,7 +465,7 @@ def out_of_balance(system: rf.System) -> float:
 
 
 @pytest.mark.parametrize("stiffness", [5e6, 5e8, 5e10, 5e12])
-def test_ties_of_any_stiffness_between_bodies_on_pads_let_them_find_rest(stiffness):
+def test_ties_of_any_stiffness_allow_static_equilibrium(stiffness):
     upper = rf.Block(width="0.63 m", height="2.4 m", mass="3 t", eccentricity="1 cm")
     lower = rf.Block(width="0.87 m", height="0.88 m", mass="1.5 t")
     pads = rf.TwoSpringSupport(frequency_ratio=22, damping_ratio=0.1)
@@ -481,7 +481,7 @@ def test_ties_of_any_stiffness_between_bodies_on_pads_let_them_find_rest(stiffne
 
 
 @pytest.mark.parametrize("offset", ["0 m", "2 cm"])
-def test_pads_too_soft_to_bear_a_body_beside_links_that_hold_nothing_are_refused(offset):
+def test_too_soft_pads_with_slack_links_are_refused(offset):
     # upright the forces balance, and at a lean where they do the bodies would fall on
     soft, firm = PADS.replace(frequency_ratio=3), PADS
     slack = TIE.replace(slack="5 cm")
@@ -493,7 +493,7 @@ def test_pads_too_soft_to_bear_a_body_beside_links_that_hold_nothing_are_refused
 
 
 @pytest.mark.parametrize("number", [pytest.param(802, marks=pytest.mark.long), 1929])
-def test_links_that_begin_to_answer_within_a_step_are_found_on_the_way(number):
+def test_links_engaging_within_a_static_step_are_resolved(number):
     system, *_ = drawn(number)
     chain = system.setting.standing.chain
     upper = chain.bodies[0].part.body
@@ -507,7 +507,7 @@ def test_links_that_begin_to_answer_within_a_step_are_found_on_the_way(number):
 
 
 @pytest.mark.parametrize("times", [1e3, 1e6, 1e9])
-def test_a_bar_that_is_as_good_as_rigid_carries_what_balance_leaves_to_it(times):
+def test_nearly_rigid_bar_carries_the_force_required_by_equilibrium(times):
     beside, half = 0.05, 0.5
     upper = rf.Block(width="1 m", height="2 m", mass="2 t", eccentricity=f"{beside} m")
     lower = rf.Block(width="1.2 m", height="1 m", mass="3 t")
@@ -526,7 +526,7 @@ def test_a_bar_that_is_as_good_as_rigid_carries_what_balance_leaves_to_it(times)
 
 
 @pytest.mark.long
-def test_bodies_that_stiff_ties_join_move_as_those_that_softer_ones_nearly_join():
+def test_response_converges_with_tie_stiffness():
     pads = rf.TwoSpringSupport(frequency_ratio=20, damping_ratio=0.1)
     stack = rf.Stack(
         rf.Block(width="1 m", height="2 m", mass="2 t"),
@@ -545,7 +545,7 @@ def test_bodies_that_stiff_ties_join_move_as_those_that_softer_ones_nearly_join(
     assert abs(peaks[2] - peaks[1]) < 0.5 * abs(peaks[1] - peaks[0]) < 0.01 * peaks[0]
 
 
-def test_a_body_that_its_tie_lifts_off_its_pads_loads_them_no_more():
+def test_body_lifted_by_its_tie_does_not_load_the_pads():
     tie = rf.Restrainer(on=("-0.5 m", "3 m"), to=("-1.5 m", "4 m"), stiffness="1 GN/m")
     held = rf.System(BLOCK, PADS, tie).moment_rotation(([0.02], "rad"))
     assert held.held_left_reaction.item() == held.held_right_reaction.item() == 0.0

@@ -48,7 +48,7 @@ def run():
     return on_rigid(STATUE, PLINTH).simulate(PULSE, outputs=["energy"], **PLAN)
 
 
-def test_a_stack_alone_stands_on_rigid_ground():
+def test_stack_defaults_to_rigid_ground():
     stack = rf.Stack(STATUE, PLINTH, interfaces=[RIGID])
     assert (
         rf.System(stack).describe().split("Contact")[1:]
@@ -58,7 +58,7 @@ def test_a_stack_alone_stands_on_rigid_ground():
 
 
 @pytest.mark.filterwarnings("ignore::rockframe.errors.RockframeWarning")
-def test_a_corner_leaves_the_ground_while_the_bodies_above_are_apart_from_it():
+def test_lowest_body_uplifts_at_its_own_threshold_below_airborne_bodies():
     """Nothing of them presses the lowest body, whose end lifts as its own force comes to zero."""
     stack = rf.Stack(
         rf.Block(width="0.6 m", height="0.34 m", mass="634 kg"),
@@ -86,7 +86,7 @@ def together(upper, lower) -> float:
 
 @pytest.mark.parametrize("way", [1.0, -1.0])
 @pytest.mark.parametrize(("upper", "lower", "first"), [(STATUE, PLINTH, 1), (HEAD, COLUMN, 2)])
-def test_what_rocks_first(upper, lower, first, way):
+def test_first_uplift_of_a_two_body_stack_matches_closed_form(upper, lower, first, way):
     alone = GRAVITY * upper.si.half_width / upper.si.half_height
     starts = alone if first == 1 else together(upper, lower)
     assert starts < (together(upper, lower) if first == 1 else alone)
@@ -102,7 +102,7 @@ def test_what_rocks_first(upper, lower, first, way):
     assert 1.01 * math.sin(2.0 * math.pi * when) == pytest.approx(1.0, abs=1e-6)
 
 
-def test_bodies_that_rock_together_do_as_one():
+def test_jointly_rocking_bodies_equal_one_block():
     whole = rf.Block(width="0.5 m", height="3.4 m", mass="3.4 t")
     parts = [rf.Block(width="0.5 m", height="1.7 m", mass="1.7 t")] * 2
     motion = shaken(1.1 * GRAVITY * 0.5 / 3.4, 0.5)
@@ -114,7 +114,7 @@ def test_bodies_that_rock_together_do_as_one():
     assert np.abs((both.rotation - one.rotation)[early]).max() < 1e-9
 
 
-def test_a_run_shows_forces_and_balances(run, tmp_path):
+def test_stack_run_reports_reactions_and_balances_energy(run, tmp_path):
     assert run.sizes["body"] == 2
     assert float(run.energy_residual) < 1e-8
     weights = GRAVITY * np.array([900.0, 3100.0])
@@ -160,7 +160,7 @@ def test_vertical_motion_makes_bodies_fly():
 @pytest.mark.parametrize(
     ("interface", "base"), [(RIGID, PADS), (RIGID, SOIL), (PADS, RIGID), (SOIL, RIGID)]
 )
-def test_rigid_bases_beside_others(interface, base):
+def test_rigid_interfaces_combine_with_pads_and_soil(interface, base):
     system = rf.System(rf.Stack(STATUE, PLINTH, interfaces=[interface], offsets=["2 cm"]), base)
     still = system.simulate(None, duration="0.3 s", accuracy="reference")
     assert np.abs(still.rotation - still.rotation[0]).max() < 1e-10
@@ -208,7 +208,7 @@ def test_columns_of_drums(count):
 
 
 @pytest.mark.parametrize(("count", "duration"), [(6, "0.5 s"), (8, "0.4 s")])
-def test_columns_of_many_drums_run_and_balance_their_energies(count, duration):
+def test_columns_of_many_drums_balance_their_energy(count, duration):
     drum = rf.Block(width="1 m", height="0.8 m", mass="1 t")
     column = rf.Stack(*[drum] * count, interfaces=[rf.RigidGround()] * (count - 1))
     pulse = rf.GroundMotion.sine_pulse("2.5 m/s^2", "1.5 Hz")
@@ -255,7 +255,7 @@ def test_more_links_than_can_be_numbered_are_refused():
         (4018, "0.08 s"),  # a corner that comes back from below its base
     ],
 )
-def test_changes_of_contact_come_to_an_end(number, ends):
+def test_contact_changes_terminate(number, ends):
     """Each stopped before it, by changes of contact without end, or by a force that is none."""
     system, motion = drawn("stack of mixed bases", np.random.default_rng(number))
     with plainly():
@@ -266,7 +266,7 @@ def test_changes_of_contact_come_to_an_end(number, ends):
 
 
 @pytest.mark.filterwarnings("ignore::rockframe.errors.RockframeWarning")
-def test_a_slip_does_not_begin_against_its_force():
+def test_light_drum_does_not_alternate_between_slip_and_stick():
     """A drum, nearly weightless, would slip and stick in turn: it tilts as it begins to slip."""
     system, motion = drawn_column(142)
     found = system.simulate(motion, duration="0.12 s", outputs=None)
@@ -280,7 +280,7 @@ def test_a_slip_does_not_begin_against_its_force():
     [(217, "1.4 s"), (163, "0.32 s"), (315, "0.65 s")],
     ids=["a set far from that with sticking", "small bounces of drums that slip", "a slip jams"],
 )
-def test_columns_that_stopped_go_on(number, ends):
+def test_drum_columns_complete_previously_failing_runs(number, ends):
     """Of eleven closed corners and more, of slips that small bounces end, and without forces."""
     system, motion = drawn_column(number)
     found = system.simulate(
@@ -291,7 +291,7 @@ def test_columns_that_stopped_go_on(number, ends):
 
 @pytest.mark.filterwarnings("ignore::rockframe.errors.RockframeWarning")
 @pytest.mark.parametrize(("number", "ends", "most"), [(684, "0.5 s", 1e-5), (434, "0.53 s", 1e-3)])
-def test_what_begins_to_slip_has_the_velocity_that_it_had(number, ends, most):
+def test_onset_of_slip_preserves_velocity(number, ends, most):
     """A body that is held begins to slip as another one, on pads, changes its contact."""
     system, motion = drawn("stack of mixed bases", np.random.default_rng(number))
     with plainly():
@@ -303,7 +303,7 @@ def test_what_begins_to_slip_has_the_velocity_that_it_had(number, ends, most):
 
 @pytest.mark.long
 @pytest.mark.filterwarnings("ignore::rockframe.errors.RockframeWarning")
-def test_what_has_lost_its_hold_is_not_held_at_the_bound():
+def test_body_beyond_friction_limit_is_not_held():
     """It cannot slip with the corners that bear; two of them part."""
     system, motion = drawn("stack of mixed bases", np.random.default_rng(4852))
     found = system.simulate(motion, duration="1.31 s", accuracy="fast", outputs=None)
@@ -322,7 +322,7 @@ def test_a_pad_that_catches_up_creates_no_energy():
 
 
 @pytest.mark.filterwarnings("ignore::rockframe.errors.RockframeWarning")
-def test_a_stack_that_falls_as_one_lands_as_one():
+def test_stack_in_joint_free_fall_lands_without_rotation():
     """Its ground falls faster four times; rates of 1e-29 had the upper block bounce once."""
     system, motion = drawn("stack of mixed bases", np.random.default_rng(326))
     with plainly():
@@ -333,7 +333,7 @@ def test_a_stack_that_falls_as_one_lands_as_one():
 
 
 @pytest.mark.parametrize("most", [0, 1, 3, 8])
-def test_sets_near_one_are_found_from_the_highest_down(most):
+def test_nearby_subsets_are_enumerated_in_descending_order(most):
     near = NearbySubsets(0b110110111, 0b010010101, most)
     found, some = [], next_subset(near.closed, near)
     while some >= 0:
@@ -344,7 +344,7 @@ def test_sets_near_one_are_found_from_the_highest_down(most):
 
 
 @pytest.mark.filterwarnings("ignore::rockframe.errors.RockframeWarning")
-def test_several_sets_at_a_change_of_slip_are_no_modes_of_an_impact():
+def test_ambiguous_slip_change_is_not_counted_as_impact_mode():
     system, motion = drawn("stack of mixed bases", np.random.default_rng(38))
     with plainly():
         found = system.simulate(motion, accuracy="fast", outputs=None, second_look=False)
@@ -361,7 +361,7 @@ def test_several_sets_at_a_change_of_slip_are_no_modes_of_an_impact():
         ((0.5, 20.0), 0.76, None, "leading-corner"),
     ],
 )
-def test_no_landing_on_pads_upon_a_light_body_gives_energy(plate, ground, joint, rule):
+def test_landing_on_pads_above_a_light_body_creates_no_energy(plate, ground, joint, rule):
     """What would stop the body that lands is more than the light one can hand on to the ground."""
     height, mass = plate
     lower = rf.Block(width="0.6 m", height=f"{height} m", mass=f"{mass} kg")
@@ -385,7 +385,7 @@ def test_no_landing_on_pads_upon_a_light_body_gives_energy(plate, ground, joint,
     ("mass", "rule", "seed"),
     [(10.0, "leading-corner", 11), (40.0, "contact-state", 3), (10.0, "centre", 6)],
 )
-def test_no_hold_out_of_flight_upon_a_light_body_gives_energy(mass, rule, seed):
+def test_holding_after_flight_above_a_light_body_creates_no_energy(mass, rule, seed):
     """What would stop the slip of a body that lands is more than a light one below can hand on."""
     tall = rf.Block(width="1.6 m", height="5.7 m", mass="1500 kg")
     plate = rf.Block(width="2.2 m", height="1.5 m", mass=f"{mass} kg")
@@ -404,7 +404,7 @@ def test_no_hold_out_of_flight_upon_a_light_body_gives_energy(mass, rule, seed):
 
 @pytest.mark.filterwarnings("ignore::rockframe.errors.RockframeWarning")
 @pytest.mark.parametrize("number", [122, 123])
-def test_bodies_that_come_to_rest_as_they_slip_give_no_energy(number):
+def test_coming_to_rest_while_slipping_creates_no_energy(number):
     """What ends bounces may pull; friction does not act then, since it would drive the slip."""
     system, motion = drawn("stack of mixed bases", np.random.default_rng(number))
     run = system.simulate(motion, outputs=["energy"], accuracy="fast", second_look=False)
@@ -414,7 +414,7 @@ def test_bodies_that_come_to_rest_as_they_slip_give_no_energy(number):
 
 @pytest.mark.filterwarnings("ignore::rockframe.errors.RockframeWarning")
 @pytest.mark.parametrize("seed", [2, 9])
-def test_a_short_slip_that_a_blow_has_turned_round_ends_against_its_friction(seed):
+def test_short_slip_reversed_by_an_impact_is_opposed_by_friction(seed):
     """On pads beneath two heavy bodies: friction of the sense it had would drive it."""
     upper = rf.Block(width="0.9 m", height="3 m", mass="1860 kg")
     middle = rf.Block(width="1.2 m", height="3.9 m", mass="315 kg")
@@ -458,7 +458,7 @@ def sliding_upon_a_landing_body(restitution):
 
 
 @pytest.mark.parametrize("restitution", [0.001, 0.3])
-def test_ends_that_land_beneath_a_body_that_slips_keep_what_their_restitution_leaves(restitution):
+def test_landing_beneath_a_sliding_body_obeys_restitution(restitution):
     """Whatever the body above takes of the blow, which is more or less than as it stood."""
     system, events = sliding_upon_a_landing_body(restitution)
     base, landings = system.on_base(1), 0
@@ -479,7 +479,7 @@ def test_ends_that_land_beneath_a_body_that_slips_keep_what_their_restitution_le
 
 
 @pytest.mark.parametrize("restitution", [0.001, 0.3])
-def test_a_body_upon_one_that_lands_gets_no_more_than_friction_gives(restitution):
+def test_impulse_on_a_body_above_a_landing_obeys_friction_limit(restitution):
     """Where no corner closes all impulses are rounding: these are no reason to stop a slip."""
     system, events = sliding_upon_a_landing_body(restitution)
 
@@ -501,7 +501,7 @@ def test_a_body_upon_one_that_lands_gets_no_more_than_friction_gives(restitution
 
 @pytest.mark.parametrize("sense", [1.0, -1.0])
 @pytest.mark.parametrize("above", [1.0, -1.0])
-def test_a_short_slip_ends_without_energy_of_what_slips_above(sense, above):
+def test_ending_a_short_slip_loses_only_its_own_energy(sense, above):
     """It ends at once: friction above, which presses less or more until then, has no time."""
     light = rf.Block(width="1 m", height="0.65 m", mass="25 kg")
     joint, pads = rf.RigidGround(friction=0.2), rf.TwoSpringSupport(

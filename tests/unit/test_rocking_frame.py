@@ -23,7 +23,7 @@ BENT = rf.RockingFrame(PIER, columns=3, beam_mass="200 t", spacing="7 m", beam_h
 PULSE = rf.GroundMotion.sine_pulse("4 m/s^2", "0.7 Hz")
 
 
-def test_a_frame_gives_back_what_it_was_made_of():
+def test_rocking_frame_attributes_and_round_trips():
     assert BENT.column == PIER
     assert BENT.columns == 3
     assert BENT.beam_mass.m_as("t") == pytest.approx(200.0)
@@ -45,7 +45,7 @@ def test_a_frame_gives_back_what_it_was_made_of():
         (PIER.replace(eccentricity="0.1 m"), {}, "eccentricity of 0.1 m"),
     ],
 )
-def test_what_makes_no_frame_is_refused(column, given, words):
+def test_invalid_rocking_frame_is_refused(column, given, words):
     with pytest.raises(ComponentError, match=words):
         rf.RockingFrame(column, **({"columns": 3, "beam_mass": "200 t"} | given))
 
@@ -59,13 +59,13 @@ def test_what_makes_no_frame_is_refused(column, given, words):
     ],
     ids=["frame", "wall", "pier"],
 )
-def test_what_would_fly_is_told_what_can_be_done(parts, ends):
+def test_flight_warning_suggests_a_remedy(parts, ends):
     pulse = rf.GroundMotion.sine_pulse("1 m/s^2", "1 Hz")
     with pytest.warns(ModelWarning, match=ends):
         rf.System(*parts).simulate(pulse.with_vertical(pulse.scaled(11.0)), outputs=None)
 
 
-def test_what_tendons_press_on_the_ground_does_not_leave_it():
+def test_tendon_preload_prevents_flight():
     pulse = rf.GroundMotion.sine_pulse("1 m/s^2", "1 Hz")
     motion = pulse.with_vertical(pulse.scaled(11.0))
     pressed = rf.System(BENT, rf.Tendon(stiffness="1 MN/m", preload="5 MN"))
@@ -78,7 +78,7 @@ def test_what_tendons_press_on_the_ground_does_not_leave_it():
         pressed.simulate(motion, outputs=None)
 
 
-def test_what_a_frame_does_not_go_with():
+def test_unsupported_parts_with_a_rocking_frame_are_refused():
     pads = rf.TwoSpringSupport(frequency_ratio=20, damping_ratio=0.1)
     with pytest.raises(AssemblyError, match="a RockingFrame stands on rigid ground"):
         rf.System(BENT, pads)
@@ -107,7 +107,7 @@ def test_what_a_frame_does_not_go_with():
         (10, 0.823055, 0.883302),
     ],
 )  # fmt: skip
-def test_the_numbers_of_the_closed_form(gamma, frequency, restitution):
+def test_frame_frequency_and_restitution_match_closed_form(gamma, frequency, restitution):
     column = rf.Block(width="1 m", height="4 m", mass="1 t")
     frame = rf.RockingFrame(column, columns=2, beam_mass=f"{2 * gamma} t")
     setting = rf.System(frame).setting
@@ -122,7 +122,7 @@ def test_the_numbers_of_the_closed_form(gamma, frequency, restitution):
     assert setting.restitution.left == pytest.approx(restitution, abs=6e-7)
 
 
-def test_columns_without_a_beam_rock_as_one_alone():
+def test_frame_with_massless_beam_equals_a_single_column():
     plan = {"free_vibration": "6 s", "outputs": ("reaction", "acceleration", "energy")}
     frame = rf.RockingFrame(PIER, columns=3, beam_mass="0 t")
     pulse = PULSE.scaled(0.6)
@@ -136,7 +136,7 @@ def test_columns_without_a_beam_rock_as_one_alone():
         np.testing.assert_allclose(several[name], 3.0 * alone[name], rtol=0.0, atol=1e-9 * scale)
 
 
-def test_peaks_at_points_are_those_of_their_histories_where_the_rotation_is_zero():
+def test_point_acceleration_peaks_match_histories_at_zero_rotation():
     column = rf.Block(width="0.8 m", height="3.2 m", mass="5.5 t")
     run = rf.System(rf.RockingFrame(column, columns=3, beam_mass="5 t")).simulate(
         rf.GroundMotion.sine_pulse("4 m/s^2", "1 Hz"), output_step="0.5 ms",
@@ -147,7 +147,7 @@ def test_peaks_at_points_are_those_of_their_histories_where_the_rotation_is_zero
     np.testing.assert_allclose(run.peak_point_vertical_acceleration, seen, rtol=2e-3)
 
 
-def test_a_run_keeps_its_energy_tells_the_scene_and_goes_to_a_file(tmp_path):
+def test_frame_run_balances_energy_and_survives_netcdf_round_trip(tmp_path):
     system = rf.System(BENT)
     run = system.simulate(
         PULSE, free_vibration="6 s", accuracy="reference", outputs=("energy", "reaction")
@@ -168,7 +168,7 @@ def test_a_run_keeps_its_energy_tells_the_scene_and_goes_to_a_file(tmp_path):
     assert "Rocking frames" in [one.title for one in model_limits(system.parts)]
 
 
-def test_statics():
+def test_frame_statics_match_closed_form():
     system = rf.System(BENT)
     weight, half = 380e3 * system.options.gravity, 0.8
     at = system.moment_rotation(["0.05 rad"])
@@ -180,7 +180,7 @@ def test_statics():
     assert system.equilibrium().uplift_moment.item() == pytest.approx(weight * half)
 
 
-def test_columns_and_beam_are_drawn_where_they_are():
+def test_columns_and_beam_are_drawn_at_their_positions():
     run = rf.System(BENT).simulate(
         PULSE, free_vibration="3 s", points={"deck": ("0 m", "11 m"), "head": ("0.8 m", "9.6 m")}
     )

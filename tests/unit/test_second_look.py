@@ -42,7 +42,7 @@ def noise():
     return rf.GroundMotion.from_arrays((6 * smooth, "m/s^2"), "0.02 s", name="noise")
 
 
-def test_a_sure_run_says_nothing_and_estimates_the_error_of_its_peak():
+def test_reliable_fast_run_is_silent_and_estimates_peak_error():
     run, said = fast()
     assert said == []
     substeps = run.attrs["solver_substeps"]
@@ -63,7 +63,7 @@ def test_a_sure_run_says_nothing_and_estimates_the_error_of_its_peak():
         (20, 14.0, "its peak rotation is"),
     ],
 )
-def test_a_run_that_is_wrong_says_so(number, ratio, words):
+def test_inaccurate_fast_run_warns(number, ratio, words):
     """One verdict and two peaks among 384 scales of a noise on six pads."""
     pads = rf.TwoSpringSupport(frequency_ratio=ratio, damping_ratio=0.1)
     system = rf.System(rf.Block.from_size(radius="2.5 m", slenderness=4.5, mass="20 t"), pads)
@@ -82,7 +82,7 @@ def test_a_run_that_is_wrong_says_so(number, ratio, words):
     assert not any("not sure" in one for one in said)
 
 
-def test_it_can_be_switched_off_and_belongs_to_fast_alone(monkeypatch):
+def test_second_look_can_be_disabled_and_applies_only_to_fast(monkeypatch):
     made = []
 
     def counted(system, plan):
@@ -117,7 +117,7 @@ FALLS = {"status": Status.OVERTURNED, "overturning_time": 2.0, "overturning_dire
 CUT = {"status": Status.CHATTER}
 
 
-def test_what_is_said(base):
+def test_second_look_messages(base):
     standing = {**STANDS, "peak_left": 0.0, "peak_right": 0.1}
     angle = SYSTEM.setting.overturning_angle
     falling = {**FALLS, "peak_left": 0.0, "peak_right": angle}
@@ -147,7 +147,7 @@ def test_what_is_said(base):
 @pytest.mark.parametrize(
     ("off", "said"), [(0.9 * MAX_PEAK_ERROR / SAFETY, 0), (1.1 * MAX_PEAK_ERROR / SAFETY, 1)]
 )
-def test_a_peak_is_not_sure_where_its_estimated_error_is_large(base, off, said):
+def test_large_estimated_peak_error_warns(base, off, said):
     first, second = (
         {**STANDS, "peak_left": 0.0, "peak_right": at} for at in (0.1, 0.1 + 0.1 * off)
     )
@@ -158,7 +158,7 @@ def test_a_peak_is_not_sure_where_its_estimated_error_is_large(base, off, said):
     assert math.isnan(peak_error(replace(run, **first), replace(run, **CUT)))
 
 
-def test_a_block_back_from_beyond_the_angle_is_judged_by_how_far_it_was_beyond(base):
+def test_returning_block_is_judged_by_its_margin_beyond_the_angle(base):
     angle = SYSTEM.setting.overturning_angle
     came_back = {"status": Status.COMPLETED, "overturning_time": 2.0, "peak_left": 0.0}
     beyond, farther, short = (

@@ -61,7 +61,7 @@ def ask(server):
     return asked
 
 
-def test_the_page_tells_what_the_run_tells(ask):
+def test_page_shows_the_verdict_of_the_run(ask):
     status, text, headers = ask("/?motion=sine_pulse&width=0.6&height=3&amplitude=6&frequency=1")
     system = rf.System(rf.Block(width="0.6 m", height="3 m", mass="5.5 t"))
     pulse = rf.GroundMotion.sine_pulse("6 m/s^2", "1 Hz")
@@ -80,7 +80,7 @@ def test_the_page_tells_what_the_run_tells(ask):
 
 @pytest.mark.parametrize("base", BASES)
 @pytest.mark.parametrize("motion", ["sine_pulse", "cosine_pulse", "example", "record"])
-def test_the_file_makes_the_scene_that_was_run(ask, record, tmp_path, base, motion):
+def test_downloaded_scene_file_reproduces_the_scene(ask, record, tmp_path, base, motion):
     given = {"base": base, "motion": motion, "scale": "1.7", "soil_damping": "0.33"}
     path = tmp_path / "scene.toml"
     path.write_text(ask(f"/scene.toml?{urlencode(given)}")[1], encoding="utf-8")
@@ -92,7 +92,7 @@ def test_the_file_makes_the_scene_that_was_run(ask, record, tmp_path, base, moti
     assert found.run == {"free_vibration": "5 s"}
 
 
-def test_a_number_is_that_which_was_typed():
+def test_typed_numbers_are_used_exactly():
     choice, _ = read_choice({"width": "0.71234567"}, None)
     assert choice.system().parts.block.width.magnitude == 0.71234567
 
@@ -102,14 +102,14 @@ def test_a_number_is_that_which_was_typed():
     {"Origin": "http://evil.example"}, {"Origin": "null"},
     {"Sec_Fetch_Site": "cross-site"}, {"Sec_Fetch_Site": "same-site"},
 ])  # fmt: skip
-def test_others_are_refused(ask, headers):
+def test_foreign_hosts_and_origins_are_refused(ask, headers):
     for path in ("/", "/outcome", "/player", "/scene.toml", "/page.js"):
         status, text, _ = ask(path, **headers)
         assert status == 403
         assert "its own address" in text
 
 
-def test_its_own_names_are_answered(ask, server):
+def test_own_host_names_are_accepted(ask, server):
     port = server.server_port
     assert server.server_address[0] == "127.0.0.1"
     assert ask("/page.js", Host=f"localhost:{port}")[0] == 200
@@ -124,7 +124,7 @@ def test_its_own_names_are_answered(ask, server):
     "/../../etc/passwd", "/page.py", "/server.py", "//etc/passwd", "/%2e%2e/page.js", "/page.js/",
     "/scene.toml/x", "/player.html", "/.",
 ])  # fmt: skip
-def test_there_is_nothing_but_its_own_pages(ask, path):
+def test_unknown_paths_return_404(ask, path):
     assert ask(path)[0] == 404
 
 
@@ -141,7 +141,7 @@ def test_there_is_nothing_but_its_own_pages(ask, path):
     ("width=<script>", "&lt;script&gt;"),
     ("base=soil&width=5&height=20&soil_stiffness=0.1&mass=200", "soft"),
 ])  # fmt: skip
-def test_wrong_values_are_told_on_the_page(ask, query, said):
+def test_invalid_values_are_reported_on_the_page(ask, query, said):
     for path in ("/", "/outcome"):
         status, text, _ = ask(f"{path}?{query.replace('<', '%3C').replace('>', '%3E')}")
         assert status == 200
@@ -150,7 +150,7 @@ def test_wrong_values_are_told_on_the_page(ask, query, said):
         assert "<script>" not in text
 
 
-def test_what_fails_inside_is_told_without_a_traceback(ask, server, monkeypatch, capsys):
+def test_internal_error_is_reported_without_a_traceback(ask, server, monkeypatch, capsys):
     def fails(choice, toml):
         raise ZeroDivisionError
 
@@ -162,7 +162,7 @@ def test_what_fails_inside_is_told_without_a_traceback(ask, server, monkeypatch,
     assert ask("/?" + "&".join(f"a{k}=1" for k in range(60)))[0] == 400
 
 
-def test_every_control_begins_between_its_ends():
+def test_control_defaults_lie_within_their_ranges():
     choice, faults = read_choice({}, None)
     assert faults == []
     for control in CONTROLS:
@@ -170,13 +170,13 @@ def test_every_control_begins_between_its_ends():
     assert set(motion_choices(None)) == {*PULSES, "example"}
 
 
-def test_a_port_that_is_taken_or_none_is_told(server):
+def test_unavailable_port_raises(server):
     for port in (server.server_port, 99999):
         with pytest.raises(ComponentError, match=f"port {port} cannot be opened"):
             Server(port)
 
 
-def test_a_browser_shows_it(server, tmp_path):
+def test_browser_renders_the_page(server, tmp_path):
     browser = which("chromium") or which("google-chrome")
     if browser is None:
         pytest.skip("neither chromium nor google-chrome is installed")

@@ -64,7 +64,7 @@ def pit(width: float, *, roof: bool = False, **more: Unpack[Some]) -> dict[str, 
     return {"width": width, "roof": roof, **more}
 
 
-def test_a_function_lists_all_that_it_takes():
+def test_decorated_function_documents_all_arguments():
     assert str(inspect.signature(pit)) == (
         "(width: float, *, roof: bool = False, depth=2.0, colour='grey') -> dict[str, object]"
     )
@@ -88,7 +88,7 @@ def test_a_function_lists_all_that_it_takes():
         pit()
 
 
-def test_rows_that_a_docstring_has_stay_and_all_follow_the_signature():
+def test_existing_docstring_rows_are_preserved_in_signature_order():
     def dug(depth=2.0, colour=None, *others):
         """Dig.
 
@@ -115,7 +115,7 @@ WITH_AXES = (rf.incremental_dynamic_analysis, rf.rocking_spectrum, rf.overturnin
 
 
 @pytest.mark.parametrize("function", TAKEN, ids=lambda one: one.__name__)
-def test_each_analysis_has_the_names_and_defaults_that_it_had(function):
+def test_analyses_have_the_shared_argument_names_and_defaults(function):
     kind, names = TAKEN[function]
     declared = declared_arguments(kind)
     assert list(declared) == names
@@ -142,7 +142,7 @@ def test_each_analysis_has_the_names_and_defaults_that_it_had(function):
     assert pickle.loads(pickle.dumps(function)) is function  # noqa: S301
 
 
-def test_sweep_and_simulate_have_what_is_declared():
+def test_sweep_and_simulate_signatures_match_declarations():
     """Both write their arguments out: one takes any further name, the other any outputs."""
     of_sweep = inspect.signature(rf.sweep).parameters
     for name, one in declared_arguments(SweepArguments).items():
@@ -161,7 +161,7 @@ def test_a_misspelt_argument_of_a_sweep_is_no_axis():
         rf.sweep(lambda width: SYSTEM, PULSE, width=[1.0], duraton="3 s")
 
 
-def test_values_are_checked_in_one_place():
+def test_shared_argument_values_are_checked_by_all_analyses():
     for wrong, words in (
         ({"duration": "3 kg"}, "duration needs a time in a unit such as s"),
         ({"overturning": "halt"}, "overturning"),
@@ -180,7 +180,7 @@ def test_values_are_checked_in_one_place():
         )
 
 
-def test_the_width_of_a_bracket_is_told_from_that_of_a_block():
+def test_width_argument_is_refused_in_favour_of_bracket_width():
     for analysis in (rf.critical_scale, rf.overturning_map):
         with pytest.raises(TypeError, match="the width of a bracket is 'bracket_width'"):
             analysis(width=0.01)

@@ -28,27 +28,27 @@ def refusal(error=AssemblyError, system=None, **arguments):
 
 
 class TestSimulateRefuses:
-    def test_nothing_to_do(self):
+    def test_missing_motion_and_duration(self):
         with pytest.raises(AssemblyError, match="nothing to simulate"):
             rf.System(block()).simulate()
         with pytest.raises(AssemblyError, match="nothing to simulate"):
             rf.System(block()).simulate(initial=rf.InitialState(rotation="0.1 rad"))
 
     @pytest.mark.parametrize("bad", ["pulse", 3, [0.0, 1.0], rf.GroundMotion, np.zeros(3)])
-    def test_what_is_no_motion(self, bad):
+    def test_invalid_motion(self, bad):
         assert "motion must be a GroundMotion" in refusal(motion=bad)
 
     @pytest.mark.parametrize("bad", ["0.1 rad", 0.1, {}, rf.InitialState])
-    def test_what_is_no_initial_state(self, bad):
+    def test_invalid_initial_state(self, bad):
         assert "InitialState" in refusal(initial=bad)
 
-    def test_two_lengths(self):
+    def test_duration_together_with_free_vibration(self):
         message = refusal(duration="1 s", free_vibration="2 s")
         assert "duration or free_vibration, not both" in message
 
     @pytest.mark.parametrize("name", ["duration", "free_vibration", "output_step"])
     @pytest.mark.parametrize("bad", ["0 s", "-1 s", "nan s", "inf s", "1 m", "1", 1.0])
-    def test_lengths_that_are_none(self, name, bad):
+    def test_invalid_durations_and_output_steps(self, name, bad):
         assert name in refusal(RockframeError, **{name: bad})
 
     @pytest.mark.parametrize("sign", ["", "-"])
@@ -64,7 +64,7 @@ class TestSimulateRefuses:
                 assert "initial rotation" in message
                 assert "overturning angle" in message
 
-    def test_a_vertical_start_on_rigid_ground(self):
+    def test_vertical_initial_state_on_rigid_ground(self):
         for start in (
             rf.InitialState(vertical_displacement="1 mm"),
             rf.InitialState(vertical_displacement="0 mm"),
@@ -82,13 +82,13 @@ class TestSimulateRefuses:
         assert "kinetic_energy" in message
 
     @pytest.mark.parametrize("bad", ["Stop", "go on", None, True, 1, []])
-    def test_other_ways_to_overturn(self, bad):
+    def test_unknown_overturning_options(self, bad):
         message = refusal(overturning=bad)
         assert "'stop', 'continue'" in message
         assert repr(bad) in message
 
     @pytest.mark.parametrize("bad", ["best", "", None, 1, True, []])
-    def test_other_accuracies(self, bad):
+    def test_unknown_accuracies(self, bad):
         message = refusal(RockframeError, accuracy=bad)
         for word in ("fast", "standard", "reference", "Accuracy", repr(bad)):
             assert word in message
@@ -108,7 +108,7 @@ class TestSimulateRefuses:
         for word in ("not both", "overturning must", "'y'", "initial rotation"):
             assert word in message
 
-    def test_an_output_step_of_no_use_even_without_histories(self):
+    def test_invalid_output_step_without_histories(self):
         assert "output_step" in refusal(RockframeError, outputs=None, output_step="5")
 
 
@@ -123,7 +123,7 @@ def _simulate(options):
 @pytest.mark.parametrize(
     "options", [{"duration": "1e12 s"}, {"output_step": "1e-13 s"}, {"free_vibration": "1e300 s"}]
 )
-def test_more_samples_than_any_machine_holds_are_refused(options):
+def test_excessive_sample_counts_are_refused_quickly(options):
     worker = multiprocessing.get_context("fork").Process(target=_simulate, args=(options,))
     worker.start()
     worker.join(20.0)
@@ -140,7 +140,7 @@ class TestAccuracy:
     def test_a_tolerance_may_be_a_number_of_numpy(self, kind):
         assert accuracy_of(kind(1e-6)) == rf.Accuracy(rtol=float(kind(1e-6)))
 
-    def test_it_is_a_frozen_value(self):
+    def test_is_an_immutable_value(self):
         accuracy = rf.Accuracy(rtol=1e-8)
         assert accuracy == rf.Accuracy(rtol=1e-8)
         assert hash(accuracy) == hash(rf.Accuracy(rtol=1e-8))
@@ -182,12 +182,12 @@ class TestAccuracy:
             ("reference", {"rtol": 1e-11, "substeps": None, "steps_per_period": 8.0}),
         ],
     )
-    def test_a_run_tells_its_settings(self, name, settings):
+    def test_run_records_its_accuracy_settings(self, name, settings):
         response = rf.System(block(), pads()).simulate(pulse(), accuracy=name, outputs=None)
         assert settings.items() <= json.loads(response.run_json)["accuracy"].items()
 
     @pytest.mark.parametrize("name", ["fast", "standard", "reference"])
-    def test_names_stand_for_settings(self, name):
+    def test_named_accuracies_equal_explicit_settings(self, name):
         response = rf.System(block(), pads()).simulate(pulse(), accuracy=name, outputs=None)
         assert response.attrs["accuracy"] == name
         if name == "fast":
@@ -212,12 +212,12 @@ class TestAccuracy:
         with pytest.raises(SolverError, match="substeps"):
             rf.Accuracy(substeps=bad)
 
-    def test_fixed_steps_ask_for_more_steps_per_period(self):
+    def test_fixed_steps_require_more_steps_per_period(self):
         assert rf.Accuracy(rtol=1e-6, steps_per_period=6.0).steps_per_period == 6.0
         with pytest.raises(SolverError, match="steps_per_period"):
             rf.Accuracy(substeps="fewest", steps_per_period=6.0)
 
-    def test_the_fewest_substeps_that_resolve_the_fastest_vibration(self):
+    def test_substeps_resolve_the_fastest_vibration(self):
         counts = []
         for frequency_ratio in (10, 20, 40, 80, 160):
             stiff = rf.TwoSpringSupport(frequency_ratio=frequency_ratio, damping_ratio=0.1)
@@ -230,7 +230,7 @@ class TestAccuracy:
             assert 2 * count - 1 <= following <= 2 * count
 
     @pytest.mark.parametrize("substeps", [3, "fewest"])
-    def test_a_still_ground_is_stepped_likewise(self, substeps):
+    def test_substeps_apply_without_a_motion(self, substeps):
         response = rf.System(block(), pads()).simulate(
             duration="2 s", accuracy=rf.Accuracy(substeps=substeps)
         )
@@ -246,7 +246,7 @@ class TestAccuracy:
 # motion ------------------------------------------------------------------------------------------
 
 
-def test_a_motion_given_to_simulate_goes_before_that_among_the_parts():
+def test_simulate_motion_overrides_motion_of_the_system():
     system = rf.System(block(), pads(), pulse())
     other = rf.GroundMotion.sine_pulse("-1 m/s^2")
     response = system.simulate(other)
@@ -254,7 +254,7 @@ def test_a_motion_given_to_simulate_goes_before_that_among_the_parts():
     assert abs(response.ground_acceleration.values).max() == pytest.approx(1.0)
 
 
-def test_lengths_of_runs():
+def test_run_duration_follows_duration_and_free_vibration():
     system = rf.System(block(), pads())
     for options, length in (
         ({}, 1.0),
@@ -271,7 +271,7 @@ def test_lengths_of_runs():
     assert still.time.values.tolist() == [0.0, 1.0, 2.0]
 
 
-def test_a_weightless_block_on_rigid_ground_is_warned_about():
+def test_downward_acceleration_beyond_gravity_on_rigid_ground_warns():
     flat = np.zeros(101)
     for lowest, warned in ((-9.0, False), (-10.0, True)):
         upwards = flat.copy()
@@ -294,7 +294,7 @@ def test_a_weightless_block_on_rigid_ground_is_warned_about():
         ("sliding", "checked", (block(), pads()), (block(), pads(friction=0.3))),
     ],
 )
-def test_options_that_a_scene_has_no_use_for_are_told(option, chosen, useless, useful):
+def test_options_without_effect_warn(option, chosen, useless, useful):
     with pytest.warns(ModelWarning, match=f"{option}='{chosen}' changes nothing here") as caught:
         rf.System(*useless, **{option: chosen})
     assert len(caught) == 1
@@ -310,7 +310,7 @@ def test_options_that_a_scene_has_no_use_for_are_told(option, chosen, useless, u
         rf.Restrainer(on=("-0.5 m", "2 m"), to=("-1 m", "2 m"), stiffness="1 MN/m", brittle=False),
     ],
 )
-def test_a_tie_without_strength_that_would_break_or_yield_is_told(tie):
+def test_brittle_option_without_strength_warns(tie):
     with pytest.warns(ModelWarning, match=f"brittle={tie.brittle} changes nothing") as caught:
         rf.System(block(), tie)
     assert len(caught) == 1

@@ -31,7 +31,7 @@ def stacked(pads, soil):
 
 
 @pytest.mark.parametrize(("pads", "soil"), [(0.12, 0.15), (0.1, None), (None, 0.15)])
-def test_they_move_as_a_stack_of_two(pads, soil):
+def test_block_and_cap_equal_a_two_body_stack(pads, soil):
     run = on_cap(pads, soil).simulate(PUSH, outputs=("energy", "cap_acceleration"), **PLAN)
     other = stacked(pads, soil).simulate(PUSH, outputs=("energy",), **PLAN)
     for name in ("rotation", "horizontal_displacement", "base_shear", "slip", "slip_velocity"):
@@ -54,7 +54,7 @@ def test_they_move_as_a_stack_of_two(pads, soil):
         assert float(run.peak_slip) > 1e-3
 
 
-def test_much_friction_holds():
+def test_high_friction_prevents_sliding():
     # but for what a change of one body's held point leaves of the other's slip: that is stopped
     # by a force, not by the same impulse
     run, held = (on_cap(one, one).simulate(PUSH, **PLAN) for one in (1e6, None))
@@ -70,7 +70,7 @@ def test_much_friction_holds():
     ("block", "options"),
     [(BLOCK, {"inclination": "3 deg"}), (BLOCK.replace(eccentricity="0.05 m"), {})],
 )
-def test_a_block_that_leans_starts_and_moves_as_one_that_is_held(block, options):
+def test_leaning_block_with_high_friction_equals_held_block(block, options):
     pads = (PADS.replace(friction=one) for one in (1e3, None))
     run, held = (rf.System(block, one, CAP, SOIL, **options).simulate(PUSH, **PLAN) for one in pads)
     assert held.rotation[0] != 0.0
@@ -93,7 +93,7 @@ def test_verdict_and_events_name_the_cap():
     assert "would_slide" not in run
 
 
-def test_what_is_held_is_checked():
+def test_checked_sliding_warns_for_block_and_cap():
     system = on_cap(0.12, 0.15, sliding="checked")
     with pytest.warns(rf.errors.ModelWarning) as caught:
         run = system.simulate(PUSH, **PLAN)
@@ -107,12 +107,12 @@ def test_what_is_held_is_checked():
     assert bool(run.would_slide)
 
 
-def test_small_rotations_do_not_slide():
+def test_sliding_with_small_rotations_is_refused():
     with pytest.raises(rf.errors.AssemblyError, match="sliding='checked'"):
         on_cap(0.12, 0.15, rotation="small").describe()
 
 
-def test_the_cap_is_drawn_where_it_is():
+def test_cap_is_drawn_at_its_slip():
     system, joints = on_cap(None, 0.1), stacked(None, 0.1)
     run, other = system.simulate(PUSH, **PLAN), joints.simulate(PUSH, **PLAN)
     values = {
@@ -125,14 +125,14 @@ def test_the_cap_is_drawn_where_it_is():
     assert middle[0, 0] == pytest.approx(float(other.body_horizontal_displacement[1, -1]), abs=5e-4)
 
 
-def test_a_block_beyond_the_edge_of_its_cap_is_warned_of():
+def test_block_sliding_beyond_the_cap_edge_warns():
     short = CAP.replace(width="1.02 m")
     system = rf.System(BLOCK, PADS.replace(friction=0.05), short, SOIL)
     with pytest.warns(rf.errors.ModelWarning, match="the block slides .* beyond the edge of the c"):
         system.simulate(PUSH.scaled(1.5), **PLAN)
 
 
-def test_the_slip_of_a_cap_alone_is_told_and_drawn():
+def test_cap_slip_is_reported_and_plotted():
     system = on_cap(None, 0.1)
     runs = rf.sweep(system, PUSH, duration="1.5 s", scale=[0.1, 1.0])
     assert "; 1 slid, by 0.0" in runs.attrs["verdict"]

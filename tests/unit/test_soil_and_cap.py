@@ -70,13 +70,13 @@ class TestEverySoilAndCap:
             setattr(component.si, field, 1.0)
         assert repr(component) == before
 
-    def test_what_it_gives_away_does_not_lead_back_in(self, component):
+    def test_to_dict_result_is_independent(self, component):
         description = component.to_dict()
         description.clear()
         assert component == copy.deepcopy(component)
         assert component.to_dict()["type"] == type(component).__name__
 
-    def test_it_equals_its_like_and_nothing_else(self, name, component):
+    def test_equals_only_identical_components(self, name, component):
         assert component == examples()[name]
         assert hash(component) == hash(examples()[name])
         others = [other for key, other in EXAMPLES.items() if key != name]
@@ -99,7 +99,7 @@ class TestEverySoilAndCap:
         assert copy.copy(component) == component
         assert copy.deepcopy(component).si == component.si
 
-    def test_it_survives_the_way_through_text_bit_for_bit(self, component):
+    def test_survives_json_round_trip_exactly(self, component):
         description = component.to_dict()
         assert all(isinstance(value, str | float) for value in description.values())
         text = json.dumps(description, allow_nan=False)
@@ -110,11 +110,11 @@ class TestEverySoilAndCap:
         arguments = {key: value for key, value in description.items() if key != "type"}
         assert type(component).from_dict(arguments) == component
 
-    def test_its_repr_builds_it_again(self, component):
+    def test_repr_evaluates_to_an_equal_component(self, component):
         space = {type(component).__name__: type(component)}
         assert eval(repr(component), space) == component  # noqa: S307
 
-    def test_it_says_what_it_is_for(self, component):
+    def test_has_noun_and_docstring(self, component):
         assert component.noun
         assert type(component).__doc__
 
@@ -127,7 +127,7 @@ _size = st.floats(1e-3, 1e9)
 @overdamped
 @given(_size, _size, st.floats(0.0, 10.0), st.sampled_from(["displacement", "pressure"]))
 @settings(max_examples=100, deadline=None)
-def test_soil_is_kept_bit_for_bit(stiffness, damping, ratio, separation):
+def test_soil_survives_json_round_trip_exactly(stiffness, damping, ratio, separation):
     for soil in (
         rf.WinklerSoil(
             stiffness=f"{stiffness!r} kN/m^2", damping=f"{damping!r} Pa*s", separation=separation
@@ -146,7 +146,7 @@ def test_soil_is_kept_bit_for_bit(stiffness, damping, ratio, separation):
 
 @given(st.floats(0.0, 1e3), st.floats(0.0, 1e9), st.none() | st.floats(1e-3, 1e3))
 @settings(max_examples=100, deadline=None)
-def test_a_cap_is_kept_bit_for_bit(height, mass, width):
+def test_cap_survives_json_round_trip_exactly(height, mass, width):
     wide = None if width is None else f"{width!r} m"
     cap = rf.CushionCap(height=f"{height!r} m", mass=f"{mass!r} kg", width=wide)
     assert (cap.si.height, cap.si.mass, cap.si.width) == (height, mass, width)
@@ -155,7 +155,7 @@ def test_a_cap_is_kept_bit_for_bit(height, mass, width):
     assert again == cap
 
 
-def test_units_of_all_kinds_say_the_same():
+def test_equivalent_units_give_equal_values():
     for text in ("9 MPa", "9e6 N/m^2", "9000 kN/m^2", "9 N/mm^2", "9e6 kg/m/s^2"):
         soil = rf.WinklerSoil(stiffness=text, damping_ratio="20 %")
         assert soil.si.stiffness == pytest.approx(9e6, rel=1e-15)
@@ -171,7 +171,7 @@ def test_units_of_all_kinds_say_the_same():
     assert cap.si == rf.CushionCap(**CAP, width="5 m").si
 
 
-def test_a_subgrade_modulus_is_spread_over_the_depth():
+def test_subgrade_modulus_is_multiplied_by_depth():
     soil = rf.WinklerSoil.from_subgrade_modulus(
         "20 MN/m^3", depth="400 cm", damping="80 kPa*s", separation="pressure"
     )
@@ -185,7 +185,7 @@ def test_a_subgrade_modulus_is_spread_over_the_depth():
         assert other.si.stiffness == pytest.approx(8e7, rel=1e-14)
 
 
-def test_soil_lets_go_by_displacement_unless_told_otherwise():
+def test_separation_defaults_to_displacement():
     assert rf.WinklerSoil(**SOIL).separation == "displacement"
     assert rf.WinklerSoil(**SOIL) == rf.WinklerSoil(**SOIL, separation="displacement")
     assert "separation" not in repr(rf.WinklerSoil(**SOIL))
@@ -195,7 +195,7 @@ def test_soil_lets_go_by_displacement_unless_told_otherwise():
     assert "separation='pressure'" in repr(pulling)
 
 
-def test_a_cap_is_as_wide_as_the_building_unless_told_otherwise():
+def test_cap_width_defaults_to_block_width():
     block = rf.Block(width="2.4 m", height="9.6 m", mass="50 t")
     soil = rf.WinklerSoil(**SOIL)
     own = rf.System(block, rf.CushionCap(**CAP), soil)
@@ -220,7 +220,7 @@ def test_mass_and_inertia_of_a_solid_cap():
 
 
 @pytest.mark.parametrize("bad", ["9 MN/m", "9e6 N/m", "9 MN/m^3", "9 N", "9 kg/m^2", "9 m", "9"])
-def test_a_stiffness_of_another_kind_is_refused(bad):
+def test_stiffness_of_wrong_dimension_is_refused(bad):
     with pytest.raises(UnitsError, match="stiffness needs") as caught:
         rf.WinklerSoil(stiffness=bad, damping_ratio=0.2)
     assert repr(bad) in str(caught.value)
@@ -229,14 +229,14 @@ def test_a_stiffness_of_another_kind_is_refused(bad):
 
 
 @pytest.mark.parametrize("bad", ["80 kN*s/m", "400 kPa", "400 kPa/s", "400 kN*s/m^3", "400"])
-def test_a_damping_of_another_kind_is_refused(bad):
+def test_damping_of_wrong_dimension_is_refused(bad):
     with pytest.raises(UnitsError, match="damping needs") as caught:
         rf.WinklerSoil(stiffness="9 MPa", damping=bad)
     assert repr(bad) in str(caught.value)
 
 
 @pytest.mark.parametrize("bad", ["20 MPa", "20 MN/m^2", "20 MN/m", "20 MN/m^4", "20"])
-def test_a_subgrade_modulus_of_another_kind_is_refused(bad):
+def test_subgrade_modulus_of_wrong_dimension_is_refused(bad):
     with pytest.raises(UnitsError, match="modulus needs"):
         rf.WinklerSoil.from_subgrade_modulus(bad, depth="4 m", damping_ratio=0.2)
 
@@ -279,7 +279,7 @@ def test_soil_out_of_range_is_refused(name, bad):
     assert "WinklerSoil" in str(caught.value)
 
 
-def test_more_of_soil_out_of_range_is_refused():
+def test_soil_damping_depth_and_modulus_out_of_range_are_refused():
     for bad in ("-1 kPa*s", "nan kPa*s", "inf Pa*s"):
         with pytest.raises(ComponentError, match="damping"):
             rf.WinklerSoil(stiffness="9 MPa", damping=bad)
@@ -309,14 +309,14 @@ def test_a_cap_out_of_range_is_refused(name, bad):
     assert "CushionCap" in str(caught.value)
 
 
-def test_a_cap_of_no_density_or_depth_is_refused():
+def test_cap_with_nonpositive_density_or_depth_is_refused():
     sizes = {"height": "0.9 m", "density": "2500 kg/m^3", "depth": "4 m"}
     for name, bad in (("density", "0 kg/m^3"), ("density", "-1 t/m^3"), ("depth", "0 m")):
         with pytest.raises(ComponentError, match=name):
             rf.CushionCap(**{**sizes, name: bad})
 
 
-def test_what_goes_together_must_come_together():
+def test_conflicting_or_incomplete_arguments_are_refused():
     for arguments, words in (
         ({}, "damping or damping_ratio; neither"),
         ({"damping": "4 kPa*s", "damping_ratio": 0.1}, "damping or damping_ratio; both"),
@@ -341,7 +341,7 @@ def test_other_rules_of_separation_are_refused(bad):
     assert repr(bad) in str(caught.value)
 
 
-def test_arguments_are_by_keyword_and_none_is_forgotten():
+def test_arguments_are_keyword_only_and_required():
     with pytest.raises(TypeError):
         rf.WinklerSoil("9 MPa", 0.2)
     with pytest.raises(TypeError):
@@ -360,7 +360,7 @@ def test_arguments_are_by_keyword_and_none_is_forgotten():
 
 
 @pytest.mark.parametrize("size", ["1e200 m", "1e308 m", "1e-200 m"])
-def test_absurd_caps_are_refused_or_make_a_sound_scene(size):
+def test_extreme_caps_are_refused_or_give_finite_statics(size):
     block = rf.Block(width="2.4 m", height="9.6 m", mass="50 t")
     soil = rf.WinklerSoil(**SOIL)
     for arguments in (
@@ -379,7 +379,7 @@ def test_absurd_caps_are_refused_or_make_a_sound_scene(size):
             assert rest[name].item() > 0.0, name
 
 
-def test_block_and_cap_as_one_body_have_the_masses_of_both():
+def test_block_and_cap_combine_mass_centre_and_inertia():
     """Summed up over point masses that have the mass, the centre and the inertia of each part."""
     block = rf.Block(width="2 m", height="6 m", mass="30 t", centre_of_mass=("2.5 m", "0.2 m"))
     cap = rf.CushionCap(height="0.8 m", mass="20 t", width="3 m")

@@ -46,7 +46,7 @@ def said(accuracy, residual, other=STOOD, base=STOOD, system=SYSTEM):
 
 
 @pytest.mark.parametrize("accuracy", ["standard", "reference", 1e-6])
-def test_steps_by_tolerance_are_judged_by_their_balance(accuracy):
+def test_adaptive_runs_are_judged_by_energy_balance(accuracy):
     assert said(accuracy, 0.5 * MAX_ADAPTIVE_RESIDUAL) == (None, [])
     text, tried = said(accuracy, 2.0 * MAX_ADAPTIVE_RESIDUAL)
     assert "out of balance by 0.002 of the largest" in text
@@ -55,7 +55,7 @@ def test_steps_by_tolerance_are_judged_by_their_balance(accuracy):
 
 
 @pytest.mark.parametrize("accuracy", ["fast", rf.Accuracy(substeps=20)])
-def test_fixed_steps_are_judged_by_a_run_by_tolerance_where_their_balance_leaves_it_open(accuracy):
+def test_doubtful_fixed_step_runs_are_compared_with_an_adaptive_run(accuracy):
     standard = rf.Accuracy(rtol=2e-8)
     rigid = rf.System(SYSTEM.parts.block)
     for system, limit in ((SYSTEM, DOUBTFUL_RESIDUAL_ON_SPRINGS), (rigid, DOUBTFUL_RESIDUAL)):
@@ -74,26 +74,26 @@ def test_fixed_steps_are_judged_by_a_run_by_tolerance_where_their_balance_leaves
         (RunSummary(True, 0.1, (0.5, 1.0), 2.0, 1, course=(1.0, 0.2)), "which overturns"),
     ],
 )
-def test_another_course_is_said(other, words):
+def test_different_adaptive_course_is_reported(other, words):
     text, _ = said("fast", 2.0 * DOUBTFUL_RESIDUAL_ON_SPRINGS, other)
     assert words in text
     assert "repeat the run with accuracy='standard'" in text
 
 
-def test_a_run_that_was_cut_off_is_not_judged():
+def test_unfinished_run_is_not_judged():
     cut_off = RunSummary(None, 0.1)
     assert said("fast", 1.0, base=cut_off) == (None, [])
     assert said("fast", 2.0 * DOUBTFUL_RESIDUAL_ON_SPRINGS, other=cut_off)[0] is None
 
 
-def test_a_run_that_is_no_solution_warns_and_says_so_in_its_cautions(monkeypatch):
+def test_run_out_of_balance_warns_and_has_a_caution(monkeypatch):
     monkeypatch.setattr(soundness, "MAX_ADAPTIVE_RESIDUAL", 1e-30)
     with pytest.warns(SolverWarning, match="out of balance"):
         run = SYSTEM.simulate(MOTION)
     assert "this is no solution" in run.attrs["cautions"]
 
 
-def test_fast_says_where_its_course_is_wrong():
+def test_fast_run_with_wrong_course_warns():
     """Sub-steps of a tenth of the period, in a scene in which every impact multiplies errors."""
     *_, scene = scenes("restraint and separation rules, finite and small", 4)
     with pytest.warns(SolverWarning, match="another course, which"):
@@ -105,7 +105,7 @@ def test_fast_says_where_its_course_is_wrong():
 
 
 @pytest.mark.parametrize("scale", [1.00001, 1.001, 1.01])
-def test_a_block_that_hardly_stirs_is_no_wrong_solution(scale):
+def test_barely_rocking_block_does_not_warn(scale):
     """Just beyond g b/h a few fixed steps hold all the motion there is."""
     system = rf.System(rf.Block(width="1 m", height="4 m", mass="10 t"))
     motion = rf.GroundMotion.sine_pulse(f"{scale * 9.80665 / 4} m/s^2", "1 Hz")
@@ -114,7 +114,7 @@ def test_a_block_that_hardly_stirs_is_no_wrong_solution(scale):
     assert run.attrs["cautions"] == "none"
 
 
-def test_motion_that_is_not_felt_is_compared_all_the_same():
+def test_imperceptible_motion_is_still_compared():
     still = replace(STOOD, peak=1e-6, peak_share=1e-5)
     assert said("standard", 2.0 * MAX_ADAPTIVE_RESIDUAL, base=still) == (None, [])
     assert (

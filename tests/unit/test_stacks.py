@@ -33,7 +33,7 @@ def run():
     return rf.System(STACK, GROUND).simulate(PULSE, outputs=["energy"], **plan)
 
 
-def test_a_stack_gives_back_what_it_was_made_of():
+def test_stack_attributes_and_round_trips():
     made = rf.Stack(STATUE, PLINTH, interfaces=[JOINT], offsets=["2 cm"])
     assert made.bodies == (STATUE, PLINTH)
     assert made.interfaces == (JOINT,)
@@ -74,7 +74,7 @@ def test_a_stack_is_changed_by_copying():
         ((STATUE, PLINTH), {"interfaces": [JOINT], "offsets": ["0.21 m"]}, "reaches 0.46 m"),
     ],
 )
-def test_what_makes_no_stack_is_refused(bodies, given, words):
+def test_invalid_stack_is_refused(bodies, given, words):
     with pytest.raises(ComponentError, match=words):
         rf.Stack(*bodies, **given)
 
@@ -96,7 +96,7 @@ def test_parts_that_do_not_fit_a_stack_are_refused(parts, words):
 
 
 @pytest.mark.parametrize("slips", [{}, {"friction": 0.4}])
-def test_the_number_of_a_mode_tells_how_each_body_stands(slips):
+def test_mode_number_encodes_the_mode_of_each_body(slips):
     ground = rf.RigidGround(**slips)
     bed = rf.WinklerSoil(stiffness="1 GPa", damping_ratio=0.1)
     three = rf.Stack(STATUE, PLINTH, PLINTH, interfaces=[JOINT, bed])
@@ -126,7 +126,7 @@ def test_twelve_drums_rock(slips):
     assert run.energy_residual < 1e-6
 
 
-def test_modes_of_twelve_drums_can_be_told_apart():
+def test_mode_numbers_suffice_for_twelve_drums():
     assert (2 * rows.RIGID_MODES) ** stack.MAX_BODIES <= MAX_MODES
 
 
@@ -157,13 +157,13 @@ def test_a_run_shows_all_bodies(run, tmp_path):
     assert float(run.energy_residual) < 1e-6
 
 
-def test_what_is_said_of_each_body_need_not_be_requested(run):
+def test_body_outputs_need_not_be_requested(run):
     assert "body_rotation" in run
     with pytest.raises(AssemblyError, match="need not name 'body_rotation': a single run has it"):
         rf.System(STACK, GROUND).simulate(PULSE, outputs=["body_rotation"], **PLAN)
 
 
-def test_the_body_of_an_event_is_that_whose_contact_changes(run):
+def test_event_body_is_the_body_whose_contact_changes(run):
     contacts = run.body_contact_state.to_numpy()
     for when in run.event_time.to_numpy():
         after = int(np.searchsorted(run.time, when))
@@ -174,7 +174,7 @@ def test_the_body_of_an_event_is_that_whose_contact_changes(run):
     pytest.fail("the plinth's contact never changed")
 
 
-def test_a_stack_overturns_where_a_lower_body_does():
+def test_overturning_of_a_lower_body_overturns_the_stack():
     # a slender column under a squat block: that would need a far greater rotation itself
     squat = rf.Block(width="1 m", height="0.8 m", mass="2 t")
     column = rf.Block(width="1 m", height="6 m", mass="9 t")
@@ -240,7 +240,7 @@ def test_models_of_a_stack_that_slides(base):
     ]  # fmt: skip
 
 
-def test_contact_states_of_a_run_in_flight():
+def test_strong_vertical_motion_gives_flight_states():
     hop = rf.GroundMotion.sine_pulse(amplitude="2 m/s^2", frequency="4 Hz").with_vertical(
         rf.GroundMotion.sine_pulse(amplitude="-25 m/s^2", frequency="4 Hz")
     )
@@ -248,7 +248,7 @@ def test_contact_states_of_a_run_in_flight():
     assert (run.body_contact_state == int(ContactState.FLIGHT)).any("time").any()
 
 
-def test_every_number_of_its_parts_can_be_changed():
+def test_every_stack_parameter_can_be_scaled():
     names = STACK.parameters()
     assert {"height of body 1", "mass of body 2", "damping ratio of interface 1"} <= {
         name.replace("_", " ") for name in names
@@ -264,7 +264,7 @@ def test_every_number_of_its_parts_can_be_changed():
 
 
 @pytest.mark.parametrize("joint", [JOINT, rf.RigidGround()])
-def test_certificates_change_all_its_numbers(joint):
+def test_certificate_varies_all_stack_parameters(joint):
     stack = rf.Stack(STATUE, PLINTH, interfaces=[joint])
     scenes = dict(parameters(rf.System(stack, GROUND).assembly))
     assert {f"{name.replace('_', ' ')} of the stack" for name in stack.parameters()} < set(scenes)
@@ -273,7 +273,7 @@ def test_certificates_change_all_its_numbers(joint):
 
 
 @pytest.mark.parametrize("masses", [(1e-9, 1.0, 1e9), (1e9, 1.0, 1e-9), (1e9, 1e-9, 1e9)])
-def test_bodies_of_masses_that_are_nothing_to_one_another_vibrate(masses):
+def test_extreme_mass_ratios_have_finite_frequencies(masses):
     blocks = [rf.Block(width="1 m", height="2 m", mass=f"{one} t") for one in masses]
     pads = rf.TwoSpringSupport(frequency_ratio=20.0, damping_ratio=0.1)
     model = rf.System(rf.Stack(*blocks, interfaces=[pads, pads]), pads).setting.compile()
@@ -282,7 +282,7 @@ def test_bodies_of_masses_that_are_nothing_to_one_another_vibrate(masses):
     assert alone.fastest_frequency * (1.0 - 1e-9) <= model.fastest_frequency < np.inf
 
 
-def test_peaks_of_bodies_are_those_of_the_whole_run():
+def test_body_peaks_cover_the_whole_run():
     push = rf.GroundMotion.sine_pulse(amplitude="-6 m/s^2", frequency="1 Hz")
     found = rf.System(STACK, GROUND).simulate(push, overturning="continue", **PLAN)
     assert float(found.peak_rotation) > 1.2 * float(found.overturning_angle)

@@ -54,7 +54,7 @@ def check_row(row, response):
             np.testing.assert_array_equal(found, values.item(), err_msg=name)
 
 
-def test_of_points_and_restrainers_each_has_a_column():
+def test_points_and_restrainers_have_separate_columns():
     tie = rf.Restrainer(
         on=("-0.4 m", "4 m"), to=("-2 m", "4 m"), stiffness="1 MN/m", name="strap"
     )  # fmt: skip
@@ -110,7 +110,7 @@ def test_joined_runs_have_their_dimensions_as_index(runs, study):
     assert len(rf.table(stacked)) == 6
 
 
-def test_runs_of_a_list_are_told_apart(runs):
+def test_listed_runs_have_distinct_indices(runs):
     other = run(rf.GroundMotion.sine_pulse("2 m/s^2", "2 Hz"))
     different = rf.table([runs[0], other])
     assert different.index.tolist() == [runs[0].attrs["motion"], other.attrs["motion"]]
@@ -132,7 +132,7 @@ def test_runs_of_a_list_are_told_apart(runs):
             check_row(row, response)
 
 
-def test_histories_and_events_stand_apart(runs):
+def test_histories_and_events_are_separate_tables(runs):
     response = runs[2]
     histories = rf.table(response, "histories")
     assert histories.index.name == "time [s]"
@@ -162,7 +162,7 @@ def test_joined_histories_end_where_their_runs_end(runs):
         assert table.loc[scale].contact_state.tolist() == words.tolist()
 
 
-def test_what_only_some_runs_have_is_missing_in_the_others(runs):
+def test_values_of_only_some_runs_are_missing_in_others(runs):
     certified = run(PULSE.scaled(2.0), certify=rf.Certification(runs=60))
     table = rf.table([runs[0], certified])
     assert pd.isna(table.verdict_converged.iloc[0])
@@ -175,7 +175,7 @@ def test_what_only_some_runs_have_is_missing_in_the_others(runs):
     assert found.tolist() == [pd.NA, certified.verdict_converged.item()]
 
 
-def test_a_table_goes_through_csv(study, tmp_path):
+def test_table_survives_csv_round_trip(study, tmp_path):
     for given, index in ((study, "scale"), (rf.concat([study] * 2, "case"), ["case", "scale"])):
         table = rf.table(given)
         table.to_csv(tmp_path / "study.csv")
@@ -183,13 +183,13 @@ def test_a_table_goes_through_csv(study, tmp_path):
         pd.testing.assert_frame_equal(again, table, check_exact=True)
 
 
-def test_a_table_from_a_file_is_the_same(study, tmp_path):
+def test_table_of_a_reopened_dataset_is_equal(study, tmp_path):
     study.to_netcdf(tmp_path / "study.nc")
     with xr.open_dataset(tmp_path / "study.nc") as again:
         pd.testing.assert_frame_equal(rf.table(again), rf.table(study))
 
 
-def test_other_answers_are_tables_too():
+def test_frequencies_spectra_and_measures_become_tables():
     modes = rf.table(rf.System(SYSTEM.parts.block, rf.TwoSpringSupport(
         frequency_ratio=20, damping_ratio=0.1)).frequencies())  # fmt: skip
     assert modes.index.tolist() == [1, 2]
@@ -202,7 +202,7 @@ def test_other_answers_are_tables_too():
     assert ratio.iloc[1] == 2.0 * ratio.iloc[0]
 
 
-def test_what_has_other_dimensions_has_rows_of_its_own():
+def test_variables_of_other_dimensions_have_separate_rows():
     """Rows are added, and not multiplied by dimensions that have nothing to do with them."""
     labels = {"quantile": [0.1, 0.9], "scale": np.arange(5.0), "response_level": [0.1, 0.2, 0.3]}
     curves = xr.Dataset(
@@ -222,7 +222,7 @@ def test_what_has_other_dimensions_has_rows_of_its_own():
     assert alone.index.names == ["quantile", "response_level"]
 
 
-def test_what_makes_no_table(runs, study):
+def test_invalid_table_arguments_are_refused(runs, study):
     for given, options, words in (
         ("run.nc", (), "open a file with xr.open_dataset first"),
         (3, (), "expected a dataset"),
@@ -239,7 +239,7 @@ def test_what_makes_no_table(runs, study):
         rf.table(runs[0], "everything")
 
 
-def test_the_example_writes_what_it_says(tmp_path, monkeypatch, capsys):
+def test_csv_example_writes_its_tables(tmp_path, monkeypatch, capsys):
     script = Path(__file__).resolve().parents[2] / "examples" / "study_to_csv.py"
     monkeypatch.setattr(sys, "argv", [script.name, "--folder", str(tmp_path)])
     runpy.run_path(str(script), run_name="__main__")

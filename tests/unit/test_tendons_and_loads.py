@@ -24,7 +24,7 @@ def moments(*parts, angles=ANGLES):
     return rf.System(*parts).moment_rotation((angles, "rad")).restoring_moment.values
 
 
-def test_a_central_tendon_has_the_moments_of_its_closed_form():
+def test_moments_of_a_central_tendon_match_closed_form():
     known = [1184947.7, 1123719.0, 1045004.1, 964051.7]
     np.testing.assert_allclose(moments(BLOCK, TENDON), known, rtol=1e-7)
     b, ea, preload = 1.0, 20e6, 0.2e6
@@ -33,7 +33,7 @@ def test_a_central_tendon_has_the_moments_of_its_closed_form():
 
 
 @pytest.mark.parametrize("base", ["pads", "soil"])
-def test_contact_is_first_lost_under_all_that_the_base_carries(base):
+def test_uplift_angle_includes_loads_on_the_base(base):
     """An end lifts where the base line has turned by the settlement under weight and load."""
     given = {"pads": rf.TwoSpringSupport(stiffness="40 MN/m", damping_ratio=0.1),
              "soil": rf.WinklerSoil(stiffness="40 MPa", damping_ratio=0.1)}  # fmt: skip
@@ -48,7 +48,7 @@ def test_contact_is_first_lost_under_all_that_the_base_carries(base):
     assert float(sides.equilibrium().uplift_angle) == pytest.approx(angle, rel=1e-9)
 
 
-def test_what_lifts_a_tied_body_of_a_stack_is_left_open():
+def test_uplift_angle_of_a_loaded_upper_body_is_undefined():
     stack = rf.Stack(rf.Block(width="1 m", height="3 m", mass="2 t"), BLOCK, interfaces=[PADS])
     free, loaded = (
         rf.System(stack, PADS, LOAD.replace(at=("0 m", "2 m"), on_body=body)) for body in (2, 1)
@@ -58,12 +58,12 @@ def test_what_lifts_a_tied_body_of_a_stack_is_left_open():
     assert math.isnan(loaded.setting.uplift_angle)
 
 
-def test_no_preload_is_one_of_zero():
+def test_preload_defaults_to_zero():
     slack, tie = rf.Tendon(stiffness="2.5 MN/m"), TENDON.replace(preload="0 N")
     np.testing.assert_array_equal(moments(BLOCK, tie), moments(BLOCK, slack))
 
 
-def test_an_eccentric_tendon_has_its_lever():
+def test_moments_of_an_eccentric_tendon_match_closed_form():
     at, preload = 0.3, 0.2e6
     for side in (1.0, -1.0):
         lever = 1.0 - side * at
@@ -74,7 +74,7 @@ def test_an_eccentric_tendon_has_its_lever():
         np.testing.assert_allclose(added, side * expected, rtol=1e-12)
 
 
-def test_a_block_with_a_tendon_uplifts_later_and_balances_its_energies():
+def test_tendon_raises_uplift_acceleration_and_energy_balances():
     system = rf.System(BLOCK, TENDON)
     rest = system.equilibrium()
     np.testing.assert_allclose(rest.static_left_reaction, 0.5 * (WEIGHT + 0.2e6))
@@ -89,7 +89,7 @@ def test_a_block_with_a_tendon_uplifts_later_and_balances_its_energies():
     np.testing.assert_allclose(mirrored.rotation, -run.rotation, rtol=0, atol=1e-9)
 
 
-def test_a_load_has_its_moment_and_its_energy():
+def test_moment_of_a_load_matches_closed_form_and_energy_balances():
     x, y, down, right = -2.0, 4.0, 50e3, 5e3  # from the right corner
     sine, cosine = np.sin(ANGLES), np.cos(ANGLES)
     turning = down * (x * cosine + y * sine) + right * (-x * sine + y * cosine)
@@ -101,7 +101,7 @@ def test_a_load_has_its_moment_and_its_energy():
 
 
 @pytest.mark.parametrize("base", [(), (PADS,)], ids=["rigid", "pads"])
-def test_links_of_any_laws_run_by_the_same_machine_code(base):
+def test_links_of_all_kinds_share_compiled_code(base):
     tie = rf.Restrainer(on=("-1 m", "6 m"), to=("-3 m", "6 m"), stiffness="1 MN/m")
     load = rf.Load(at=("0 m", "4 m"), horizontal="1 kN")
     wall = rf.RearWall(side="left", stiffness="2 MN/m", gap="5 mm")
@@ -114,7 +114,7 @@ def test_links_of_any_laws_run_by_the_same_machine_code(base):
     assert [one.modes() / systems[1].modes() for one in systems] == [4, 1, 2, 8]
 
 
-def test_the_work_of_a_load_is_gravity_beside_restrainers_too():
+def test_work_of_a_load_is_potential_energy_with_restrainers():
     slack = rf.Restrainer(on=("-1 m", "6 m"), to=("-3 m", "6 m"), stiffness="1 MN/m", slack="9 m")
     with plainly():
         alone, beside = (
@@ -139,7 +139,7 @@ def test_a_mass_at_a_point_is_a_part_of_the_body():
     np.testing.assert_allclose(runs[1].rotation, runs[0].rotation, rtol=0, atol=1e-10)
 
 
-def test_an_axis_of_masses_may_begin_at_none():
+def test_sweep_of_moving_mass_may_include_zero():
     system = rf.System(BLOCK, rf.Load(at=("0 m", "8 m"), moving_mass="5 t"))
     runs = rf.sweep(system, PULSE, moving_mass=["0 t", "5 t"], outputs=None, progress=False)
     for parts, peak in zip(((BLOCK,), system.parts.structural()), runs.peak_rotation, strict=True):
@@ -147,7 +147,7 @@ def test_an_axis_of_masses_may_begin_at_none():
         assert peak.item() == pytest.approx(float(alone.peak_rotation), rel=1e-6)
 
 
-def test_on_pads_a_tendon_is_a_tie_from_its_depth():
+def test_tendon_on_pads_equals_an_anchored_restrainer():
     tie = rf.Restrainer(
         on=("0.2 m", "0 m"), to=("0.2 m", "-2 m"), stiffness="2.5 MN/m", preload="0.2 MN"
     )
@@ -165,7 +165,7 @@ def test_on_pads_a_tendon_is_a_tie_from_its_depth():
         rf.Load(at=("0 m", "1 m"))
 
 
-def test_sweeps_and_certificates_name_several_links():
+def test_sweep_axes_distinguish_several_links():
     tie = rf.Restrainer(
         on=("-1 m", "6 m"), to=("-3 m", "6 m"), stiffness="1 MN/m", slack="5 mm", name="upper"
     )
@@ -181,7 +181,7 @@ def test_sweeps_and_certificates_name_several_links():
         rf.sweep(both, motions={"pulse": PULSE}, axes={"stiffness": ([1.0], "MN/m")})
 
 
-def test_files_hold_several_links(tmp_path):
+def test_scene_file_may_contain_several_links(tmp_path):
     path = tmp_path / "scene.toml"
     path.write_text(
         """

@@ -19,7 +19,7 @@ def analysis():
 # maps and spectra ----------------------------------------------------------------------------
 
 
-def test_a_map_has_its_labels_and_gives_cases_back(tmp_path):
+def test_overturning_map_has_labels_and_reproduces_its_cases(tmp_path):
     pulse = rf.GroundMotion.sine_pulse("-3 m/s^2", "2 Hz")
     options = {"amplitude": ([3, 6, 12], "m/s^2"), "frequency": (["1 Hz", "2 Hz"]), **FAST}
     found = rf.overturning_map(SYSTEM, pulse, **options)
@@ -37,7 +37,7 @@ def test_a_map_has_its_labels_and_gives_cases_back(tmp_path):
         assert np.array_equal(mirrored[name].values, found[name].values, equal_nan=True), name
 
 
-def test_a_rocking_spectrum_is_single_runs_of_blocks_of_that_size(tmp_path):
+def test_rocking_spectrum_equals_single_runs_of_resized_blocks(tmp_path):
     found = rf.rocking_spectrum(
         SYSTEM, motions(), periods=([2.0, 3.0], "s"), slenderness=[3, 5], **FAST
     )
@@ -84,7 +84,7 @@ BODIES = {
 
 @pytest.mark.long
 @pytest.mark.parametrize("name", BODIES)
-def test_bodies_told_by_their_inertia_keep_their_shape_factor_at_other_sizes(name):
+def test_bodies_defined_by_inertia_are_resized_at_constant_shape_factor(name):
     body = BODIES[name]
     motion = motions()["seed 1"]
     system = rf.System(body, gravity="9.7 m/s^2", inclination="0.5 deg", rotation="small")
@@ -127,7 +127,7 @@ def test_an_overturning_spectrum_is_a_dynamic_analysis_of_each_block():
 # probability ---------------------------------------------------------------------------------
 
 
-def test_a_probability_is_that_of_the_same_cases_run_alone(tmp_path):
+def test_overturning_probability_equals_share_of_single_runs(tmp_path):
     pulse = rf.GroundMotion.sine_pulse("4 m/s^2", "1.5 Hz")
     spread = {"width": ("normal", "0.5 m", "5 cm"), "scale": ("lognormal", 1.0, 0.4)}
     found = rf.probability_of_overturning(SYSTEM, pulse, spread=spread, cases=120, seed=3, **FAST)
@@ -154,7 +154,7 @@ def test_a_probability_is_that_of_the_same_cases_run_alone(tmp_path):
     xr.testing.assert_identical(found.drop_attrs(), again.drop_attrs())
 
 
-def test_ways_to_draw_and_distributions():
+def test_sampling_methods_accept_scipy_and_named_distributions():
     pulse = rf.GroundMotion.sine_pulse("4 m/s^2", "1.5 Hz")
     for sampling in ("random", "sobol", "latin"):
         found = rf.probability_of_overturning(
@@ -168,7 +168,7 @@ def test_ways_to_draw_and_distributions():
         assert sorted(found.parameter.values) == ["height", "motion", "scale"]
 
 
-def test_bad_spreads_are_told_all_at_once():
+def test_all_faulty_spreads_are_reported_at_once():
     pulse = rf.GroundMotion.sine_pulse("4 m/s^2", "1.5 Hz")
     with pytest.raises(StudyError) as problem:
         rf.probability_of_overturning(
@@ -190,7 +190,7 @@ def test_a_distribution_in_another_unit_is_refused():
         rf.probability_of_overturning(SYSTEM, pulse, spread=given)
 
 
-def test_the_ranking_is_that_of_sobol_indices():
+def test_parameter_ranking_equals_first_order_sobol_indices():
     """Y = [a + 0.5 b > 0] of normal a, b: the first-order indices by integration."""
     rng = np.random.default_rng(8)
     a, b, c = rng.normal(size=(3, 40_000))
@@ -217,7 +217,7 @@ def test_the_ranking_is_that_of_sobol_indices():
 
 
 @pytest.mark.long
-def test_bands_of_ensembles_hold_as_often_as_they_say():
+def test_ensemble_bands_have_nominal_coverage():
     rng = np.random.default_rng(4)
     held = {"pointwise": 0, "everywhere": 0, "quantile": 0}
     rounds, count = 400, 25
@@ -247,7 +247,7 @@ def test_bands_of_ensembles_hold_as_often_as_they_say():
     assert held["quantile"] / rounds >= 0.88
 
 
-def test_an_ensemble_of_runs_has_the_units_of_its_variable(tmp_path):
+def test_ensemble_statistics_have_units_of_their_variable(tmp_path):
     runs = rf.sweep(SYSTEM, motions(), scale=[1.0, 3.0], **FAST)
     found = rf.ensemble_statistics(runs, "peak_rotation", pooled=["scale"])
     assert checked(found, tmp_path)
@@ -260,7 +260,7 @@ def test_an_ensemble_of_runs_has_the_units_of_its_variable(tmp_path):
         rf.ensemble_statistics(xr.DataArray([np.nan], dims="motion", name="x"))
 
 
-def test_figures_are_drawn_of_what_they_are_for(analysis):
+def test_study_figures_draw_their_dataset_and_refuse_others(analysis):
     drawn = {
         "dynamic_analysis": analysis,
         "fragility": rf.fragility(analysis),
@@ -281,7 +281,7 @@ def test_figures_are_drawn_of_what_they_are_for(analysis):
 # sequences -----------------------------------------------------------------------------------
 
 
-def test_earthquakes_in_sequence_are_runs_that_go_on(tmp_path):
+def test_earthquake_sequence_equals_continued_runs(tmp_path):
     """Each starts where the one before ended: the same as going on from its dataset."""
     system = rf.System(BLOCK, rf.TwoSpringSupport(frequency_ratio=15, damping_ratio=0.1))
     one, two = list(motions().values())[:2]
@@ -302,7 +302,7 @@ def test_earthquakes_in_sequence_are_runs_that_go_on(tmp_path):
 
 @pytest.mark.parametrize("step", ["0.02 s", "0.004 s", "0.0125 s"])
 @pytest.mark.parametrize("first", [0, 1])
-def test_earthquakes_of_unlike_time_steps_stay_what_they_are(step, first):
+def test_sequence_of_unlike_time_steps_equals_continued_runs(step, first):
     """Each earthquake is the function of time that it is alone."""
     coarse = motions()["seed 1"].resampled(step)
     vertical = motions()["seed 0"]
@@ -338,7 +338,7 @@ def test_pulses_keep_their_polynomials_in_a_sequence():
             rf.earthquake_sequences(SYSTEM, wrong)
 
 
-def test_gaps_are_looked_into_where_a_lower_body_alone_moves():
+def test_gaps_are_refined_when_only_a_lower_body_moves():
     """The squat body on top never leaves its base."""
     squat = rf.Block(width="0.9 m", height="0.6 m", mass="900 kg")
     slender = rf.Block(width="0.95 m", height="5 m", mass="9 t")
@@ -352,7 +352,7 @@ def test_gaps_are_looked_into_where_a_lower_body_alone_moves():
     assert 0.0 < found.capacity_resolution.item() <= 0.5
 
 
-def test_a_wall_that_has_a_height_leaves_that_of_the_block_to_spectra():
+def test_rocking_spectrum_resizes_block_but_not_its_wall():
     block = rf.Block(width="0.8 m", height="3.2 m", mass="5.5 t")
     wall, pulse = rf.RearWall(side="left"), rf.GroundMotion.sine_pulse("-4 m/s^2", "1 Hz")
     found = rf.rocking_spectrum(rf.System(block, wall), pulse, periods=["4 s"], accuracy="fast")
@@ -364,7 +364,7 @@ def test_a_wall_that_has_a_height_leaves_that_of_the_block_to_spectra():
     assert again.si.height == pytest.approx(height, rel=1e-12)
 
 
-def test_spectra_name_what_is_no_block():
+def test_rocking_spectrum_refuses_a_rocking_frame():
     frame = rf.RockingFrame(
         rf.Block(width="0.8 m", height="3.2 m", mass="5.5 t"), columns=2, beam_mass="1 t"
     )
@@ -373,7 +373,7 @@ def test_spectra_name_what_is_no_block():
         rf.rocking_spectrum(rf.System(frame), pulse, periods=["4 s"])
 
 
-def test_a_sequence_tells_the_pause_that_it_made():
+def test_sequence_reports_its_pause_in_whole_time_steps():
     """Pauses are whole time steps, and of each sequence its own."""
     fine = rf.GroundMotion.from_arrays((np.zeros(50), "m/s^2"), "4 ms")
     coarse = rf.GroundMotion.from_arrays((np.zeros(50), "m/s^2"), "10 ms")

@@ -13,7 +13,7 @@ BLOCK = rf.Block.from_size(radius="3 m", slenderness=4, mass="10 t")
 PADS = rf.TwoSpringSupport(frequency_ratio=20, damping_ratio=0.1)
 
 
-def test_the_ground_that_is_not_given_has_a_restitution() -> None:
+def test_implied_rigid_ground_takes_a_restitution_axis() -> None:
     runs = rf.sweep(rf.System(BLOCK), PULSE, restitution=[0.8, 0.85], duration="4 s")
     given = rf.System(BLOCK, rf.RigidGround(restitution=0.85)).simulate(PULSE, duration="4 s")
     assert float(runs.peak_rotation.sel(restitution=0.85).squeeze()) == float(given.peak_rotation)
@@ -21,13 +21,13 @@ def test_the_ground_that_is_not_given_has_a_restitution() -> None:
     assert float(again.peak_rotation) == float(given.peak_rotation)
 
 
-def test_the_ground_that_is_not_given_has_a_friction() -> None:
+def test_implied_rigid_ground_takes_a_friction_axis() -> None:
     runs = rf.sweep(rf.System(BLOCK), PULSE, friction=[0.1, 0.3], duration="4 s")
     given = rf.System(BLOCK, rf.RigidGround(friction=0.1)).simulate(PULSE, duration="4 s")
     assert float(runs.peak_slip.sel(friction=0.1).squeeze()) == float(given.peak_slip) > 0.0
 
 
-def test_parts_that_are_given_come_before_the_ground() -> None:
+def test_explicit_parts_take_precedence_over_implied_ground() -> None:
     before = rf.System(BLOCK, rf.RearWall(side="left"))
     runs = rf.sweep(before, PULSE, restitution=[-0.5, -0.1], duration="4 s")
     assert rf.case(runs, restitution=-0.1).system.parts.wall.restitution == -0.1
@@ -37,7 +37,7 @@ def test_parts_that_are_given_come_before_the_ground() -> None:
 
 
 @pytest.mark.parametrize("base", [(), (PADS,)], ids=["rigid ground", "pads"])
-def test_slenderness_leaves_the_radius(base: tuple[rf.TwoSpringSupport, ...]) -> None:
+def test_slenderness_axis_preserves_the_radius(base: tuple[rf.TwoSpringSupport, ...]) -> None:
     slender = np.linspace(3.0, 6.0, 20)  # enough for lanes
     runs = rf.sweep(rf.System(BLOCK, *base), PULSE, slenderness=slender, duration="6 s")
     for ratio in slender[[0, 7, 19]]:
@@ -47,7 +47,7 @@ def test_slenderness_leaves_the_radius(base: tuple[rf.TwoSpringSupport, ...]) ->
         assert found == pytest.approx(float(alone.peak_rotation), rel=1e-9)
 
 
-def test_radius_leaves_the_slenderness_and_goes_with_it() -> None:
+def test_radius_axis_preserves_slenderness_and_combines_with_it() -> None:
     size = {"radius": ["2 m", "5 m"], "slenderness": [3, 5]}
     runs = rf.sweep(rf.System(BLOCK), PULSE, axes=size, duration="4 s")
     block = rf.case(runs, radius="5 m", slenderness=3).system.parts.block
@@ -56,7 +56,7 @@ def test_radius_leaves_the_slenderness_and_goes_with_it() -> None:
     assert rf.case(alone).system.parts.block.slenderness == pytest.approx(4.0)
 
 
-def test_slenderness_beside_a_side() -> None:
+def test_slenderness_combines_with_width_or_height() -> None:
     runs = rf.sweep(rf.System(BLOCK), PULSE, slenderness=[5], width=["2 m"], duration="2 s")
     block = rf.case(runs).system.parts.block
     assert (block.width.m_as("m"), block.height.m_as("m")) == pytest.approx((2.0, 10.0))
@@ -71,7 +71,7 @@ def test_slenderness_beside_a_side() -> None:
         {"slenderness": [3], "width": ["1 m"], "height": ["3 m"]},
     ],
 )
-def test_size_is_told_once(axes: dict[str, list[object]]) -> None:
+def test_axes_that_determine_size_twice_are_refused(axes: dict[str, list[object]]) -> None:
     with pytest.raises(StudyError, match="determine its size twice"):
         rf.sweep(rf.System(BLOCK), PULSE, axes=axes)
 
@@ -82,7 +82,7 @@ def test_slenderness_of_a_body_with_an_inertia_is_refused() -> None:
         rf.sweep(rf.System(drum), PULSE, slenderness=[2, 3])
 
 
-def test_a_slenderness_below_zero_is_a_case_that_is_refused() -> None:
+def test_negative_slenderness_fails_only_its_own_case() -> None:
     with pytest.warns(rf.errors.SolverWarning, match="slenderness must be greater than zero"):
         runs = rf.sweep(rf.System(BLOCK), PULSE, slenderness=[-1.0, 4.0], duration="2 s")
     assert runs.message.values[0, 0].startswith("Block: slenderness")
@@ -100,14 +100,14 @@ def test_slenderness_and_restitution_are_spread() -> None:
     assert set(found.parameter.values) == {"slenderness", "restitution"}
 
 
-def test_the_nearest_of_many_values_is_named() -> None:
+def test_case_lookup_error_names_the_nearest_value() -> None:
     scales = np.linspace(0.5, 4.0, 20)
     runs = rf.sweep(rf.System(BLOCK), PULSE, scale=scales, duration="1 s", accuracy="fast")
     with pytest.raises(StudyError, match=r"scale has no 2\.0; .*; the nearest is 1\.97"):
         rf.case(runs, scale=2.0)
 
 
-def test_peaks_of_the_motion_have_their_abbreviations() -> None:
+def test_intensity_axes_accept_abbreviations() -> None:
     runs = rf.sweep(rf.System(BLOCK), PULSE, PGA=["2 m/s^2", "4 m/s^2"], duration="2 s")
     assert runs.overturned.dims == ("peak_ground_acceleration", "motion")
     assert rf.case(runs, PGA="4 m/s^2").motion.peak_acceleration.m_as("m/s^2") == 4.0
@@ -119,7 +119,7 @@ def test_peaks_of_the_motion_have_their_abbreviations() -> None:
     assert "PGA" in own.dims
 
 
-def test_a_case_without_its_unit_is_answered_by_one_with_it():
+def test_case_label_without_unit_raises_with_an_example():
     column = rf.System(rf.Block(width="1 m", height="4 m", mass="1 t"))
     pulse = rf.GroundMotion.sine_pulse("2 m/s^2", "2 Hz")
     runs = rf.sweep(column, pulse, width=["1 m"], outputs=None, progress=False)
@@ -128,7 +128,7 @@ def test_a_case_without_its_unit_is_answered_by_one_with_it():
         rf.case(runs, width="1")
 
 
-def test_an_array_is_in_the_unit_that_it_tells() -> None:
+def test_arrays_are_converted_from_their_units_attribute() -> None:
     """Of ratios it was left out, and 70 % were 70."""
     system = rf.System(BLOCK, PADS)
     percent = xr.DataArray([20.0, 70.0], attrs={"units": "%"})
@@ -147,12 +147,12 @@ def test_an_array_is_in_the_unit_that_it_tells() -> None:
     assert rf.sweep(tower, PULSE, base=widths, duration="2 s").base.values.tolist() == [0.6, 0.7]
 
 
-def test_seventy_per_cent_is_a_label_of_one_digit() -> None:
+def test_percent_labels_are_converted_without_rounding_noise() -> None:
     runs = rf.sweep(rf.System(BLOCK, PADS), PULSE, scale=([20, 70.0], "%"), duration="2 s")
     assert runs.scale.values.tolist() == [0.2, 0.7]
 
 
-def test_one_array_has_one_unit() -> None:
+def test_conflicting_units_of_an_array_are_refused() -> None:
     system = rf.System(rf.Block(width="0.5 m", height="3 m", mass="2 t"))
     widths = xr.DataArray([60.0, 70.0], attrs={"units": "cm"})
     percent = xr.DataArray([20.0, 70.0], attrs={"units": "%"})
@@ -188,7 +188,7 @@ def test_masked_quantities_are_refused_and_not_read_as_zero() -> None:
         rf.InitialState(rotation=registry.Quantity(np.ma.masked, "rad"))
 
 
-def test_quantities_one_by_one_are_a_column() -> None:
+def test_lists_of_quantities_are_accepted_as_columns() -> None:
     registry = pint.get_application_registry()
     heights = [registry.Quantity(400, "cm"), registry.Quantity(5.0, "m")]
     runs = rf.sweep(rf.System(BLOCK), PULSE, cases={"height": heights}, duration="1 s")
@@ -197,7 +197,7 @@ def test_quantities_one_by_one_are_a_column() -> None:
         rf.sweep(rf.System(BLOCK), PULSE, cases={"height [m]": heights}, duration="1 s")
 
 
-def test_values_that_are_made_one_after_the_other() -> None:
+def test_axis_values_may_come_from_a_generator() -> None:
     made = (f"{height} m" for height in (4, 5))
     runs = rf.sweep(rf.System(BLOCK), PULSE, height=made, duration="1 s")
     assert runs.height.values.tolist() == [4.0, 5.0]
@@ -213,12 +213,12 @@ def test_values_that_are_made_one_after_the_other() -> None:
     [np.array([2**63 + 1], dtype=np.uint64), np.array(["2026-01-01"], dtype="M8[D]")],
     ids=["beyond whole numbers", "dates"],
 )
-def test_values_that_are_no_numbers_of_a_function_are_refused(values: np.ndarray) -> None:
+def test_dates_and_oversized_integers_are_refused_as_axis_values(values: np.ndarray) -> None:
     with pytest.raises(StudyError, match="drop needs numbers, words or quantities"):
         rf.sweep(lambda drop: rf.System(BLOCK), PULSE, drop=values)
 
 
-def test_labels_that_were_put_into_another_unit() -> None:
+def test_converted_labels_are_read_in_their_own_unit() -> None:
     """For a figure, say; they were taken for SI units, in which cases and measures are."""
     system = rf.System(rf.Block(width="0.5 m", height="2 m", mass="400 kg"))
     motions = {f"{f} Hz": rf.GroundMotion.sine_pulse("1 m/s^2", f"{f} Hz") for f in (1, 2, 3)}

@@ -72,7 +72,7 @@ def test_two_jobs_run_each_case_once(whole, tmp_path, another, this):
 
 
 @pytest.mark.skipif(not KNOWS_PROCESSES, reason="the system does not tell of processes")
-def test_the_chunks_of_a_job_that_is_killed_go_to_another(whole, tmp_path, another, this):
+def test_chunks_of_a_killed_job_are_taken_over(whole, tmp_path, another, this):
     with ThreadPoolExecutor(1) as pool:
         going_on = pool.submit(this)
         while not (going_on.done() or (tmp_path / "log 1").exists()):
@@ -90,7 +90,7 @@ def test_the_chunks_of_a_job_that_is_killed_go_to_another(whole, tmp_path, anoth
     assert max(run.values()) <= 2
 
 
-def test_of_many_that_try_at_once_one_has_a_chunk(tmp_path):
+def test_only_one_of_concurrent_jobs_claims_a_chunk(tmp_path):
     every = [Claims(tmp_path) for _ in range(8)]
     with ThreadPoolExecutor(8) as pool:
         for number in range(50):
@@ -100,7 +100,7 @@ def test_of_many_that_try_at_once_one_has_a_chunk(tmp_path):
     assert not [*tmp_path.iterdir()]
 
 
-def test_what_is_let_go_may_be_taken_again(tmp_path):
+def test_released_claims_can_be_taken_again(tmp_path):
     one, other = Claims(tmp_path), Claims(tmp_path)
     assert one.take(3)
     assert not other.take(3)
@@ -111,7 +111,7 @@ def test_what_is_let_go_may_be_taken_again(tmp_path):
     assert not one.take(4)
 
 
-def test_a_job_that_is_killed_as_it_claims_leaves_nothing_to_wait_for(tmp_path, monkeypatch):
+def test_job_killed_while_claiming_leaves_no_claim(tmp_path, monkeypatch):
     class Killed(BaseException):
         pass
 
@@ -130,7 +130,7 @@ def test_a_job_that_is_killed_as_it_claims_leaves_nothing_to_wait_for(tmp_path, 
     assert json.loads(claimed.read_bytes()) == module._this_job()
 
 
-def test_claims_are_made_also_where_files_have_one_name(tmp_path, monkeypatch):
+def test_claims_work_without_hard_links(tmp_path, monkeypatch):
     def refused(*_):
         raise PermissionError(1, "Operation not permitted")
 
@@ -161,7 +161,7 @@ SILENT = {
 
 
 @pytest.mark.parametrize("content", [pytest.param(one, id=name) for name, one in SILENT.items()])
-def test_a_claim_that_is_silent_for_long_is_that_of_a_dead_job(tmp_path, monkeypatch, content):
+def test_claims_expire_after_the_timeout(tmp_path, monkeypatch, content):
     path, one = claim(tmp_path, content), Claims(tmp_path)
     now = [1000.0]
     monkeypatch.setattr(module.time, "monotonic", lambda: now[0])
@@ -179,7 +179,7 @@ def test_a_claim_that_is_silent_for_long_is_that_of_a_dead_job(tmp_path, monkeyp
     assert not other.take(7)
 
 
-def test_a_living_job_says_so(tmp_path, monkeypatch):
+def test_living_job_renews_its_claims(tmp_path, monkeypatch):
     now = [1000.0]
     monkeypatch.setattr(module.time, "monotonic", lambda: now[0])
     one = Claims(tmp_path)
@@ -195,7 +195,7 @@ def test_a_living_job_says_so(tmp_path, monkeypatch):
 
 
 @pytest.mark.skipif(not KNOWS_PROCESSES, reason="the system does not tell of processes")
-def test_a_process_that_has_ended_is_dead_at_once(tmp_path):
+def test_claims_of_ended_processes_expire_immediately(tmp_path):
     running = subprocess.Popen([sys.executable, "-c", "input()"], stdin=subprocess.PIPE)
     its = {"process": running.pid, "begun": module._start_of_process(running.pid)}
     claim(tmp_path, module._this_job() | its)
@@ -212,7 +212,7 @@ def test_a_process_that_has_ended_is_dead_at_once(tmp_path):
 
 
 @pytest.mark.wide
-def test_damaged_claims_delay_a_study_and_change_nothing(whole, tmp_path, monkeypatch):
+def test_damaged_claims_do_not_change_results(whole, tmp_path, monkeypatch):
     folder = tmp_path / "study"
     folder.mkdir()
     for number, content in enumerate(SILENT.values()):
@@ -224,7 +224,7 @@ def test_damaged_claims_delay_a_study_and_change_nothing(whole, tmp_path, monkey
     is_whole(folder, whole)
 
 
-def test_a_job_that_fails_gives_its_chunks_up(tmp_path):
+def test_failing_job_releases_its_chunks(tmp_path):
     class Broken(ThreadPoolExecutor):
         def submit(self, *_, **__):
             msg = "no more"
@@ -238,13 +238,13 @@ def test_a_job_that_fails_gives_its_chunks_up(tmp_path):
     assert time.monotonic() - begun < module._TIMEOUT
 
 
-def test_where_a_claim_cannot_be_written_it_says_so(tmp_path):
+def test_unwritable_claims_folder_raises(tmp_path):
     (tmp_path / "claims").write_text("a file")
     with pytest.raises(StudyError, match=r"claims.* cannot be written"):
         Claims(tmp_path).take(1)
 
 
-def test_workers_are_those_of_the_executor():
+def test_worker_count_is_read_from_the_executor():
     class Dask:
         class _client:  # noqa: N801
             @staticmethod
@@ -262,7 +262,7 @@ def test_workers_are_those_of_the_executor():
 
 
 @pytest.mark.parametrize("workers", [pytest.param(1, marks=pytest.mark.long), 3])
-def test_no_more_chunks_are_handed_out_than_workers_need(workers):
+def test_submitted_chunks_are_limited_to_twice_the_workers(workers):
     going = []
 
     class Counted(ThreadPoolExecutor):

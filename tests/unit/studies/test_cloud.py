@@ -55,7 +55,7 @@ def logistic_by_weights(logs, verdict):
     return at, np.linalg.inv(design.T @ (weight[:, None] * design))
 
 
-def test_a_line_alone_gives_the_lognormal_curve_of_least_squares(base):
+def test_cloud_without_overturning_equals_lognormal_least_squares(base):
     runs = made(base, falls=False)
     found = rf.cloud_analysis(runs, "strength", limits=[0.1, 0.4])
     logs, response = (
@@ -80,7 +80,7 @@ def test_a_line_alone_gives_the_lognormal_curve_of_least_squares(base):
     assert found.median_intensity.attrs["units"] == "m"
 
 
-def test_overturning_is_logistic_and_adds_to_the_line(base):
+def test_overturning_is_fitted_by_logistic_regression(base):
     runs = made(base, seed=3)
     found = rf.cloud_analysis(runs, "strength", limits=[0.3])
     fell = runs.status.values.ravel() == RunStatus.OVERTURNED
@@ -112,7 +112,7 @@ def test_overturning_is_logistic_and_adds_to_the_line(base):
         assert (sign * (band - found.exceedance_probability) > 0.0).all()
 
 
-def test_runs_that_stay_at_rest_count_apart(base):
+def test_resting_runs_are_modelled_separately(base):
     runs = made(base, seed=5, rests=True)
     found = rf.cloud_analysis(runs, "strength", limits=[0.1])
     response = runs.peak_relative_rotation.values.ravel()
@@ -132,7 +132,7 @@ def test_runs_that_stay_at_rest_count_apart(base):
     assert int(floored.resting_count) == (response[~fell] < 0.1).sum()
 
 
-def test_coefficients_are_drawn_from_their_distributions():
+def test_regression_coefficients_are_drawn_from_t_and_chi2():
     rng = np.random.default_rng(1)
     logs = rng.normal(size=15)
     line = Regression.fit(logs, 0.3 + 1.2 * logs + 0.4 * rng.standard_normal(15))
@@ -146,7 +146,7 @@ def test_coefficients_are_drawn_from_their_distributions():
     assert stats.kstest(13 * (line.dispersion / spread) ** 2, stats.chi2(13).cdf).pvalue > 1e-3
 
 
-def test_bounds_hold_the_curve_as_often_as_they_say():
+def test_cloud_bounds_have_nominal_coverage():
     """Bounds of 95 % of a curve at an intensity, of 600 simulated samples of 30 runs."""
     rng = np.random.default_rng(7)
     held, at, level = 0, np.array([0.4]), 0.5
@@ -160,7 +160,7 @@ def test_bounds_hold_the_curve_as_often_as_they_say():
     assert 0.93 <= held / 600 <= 0.97
 
 
-def test_a_curve_that_lies_above_one_half_all_along_has_a_median_of_zero(base):
+def test_curve_above_one_half_everywhere_has_zero_median_bound(base):
     """Of few runs many draws of the overturning probability fall with the intensity."""
     rng = np.random.default_rng(2)
     logs = rng.normal(0.5, 0.6, 12)
@@ -183,7 +183,7 @@ def test_a_curve_that_lies_above_one_half_all_along_has_a_median_of_zero(base):
 
 
 @pytest.mark.parametrize("of", ["rest", "overturning"])
-def test_runs_that_an_intensity_parts_the_wrong_way_have_no_curve(base, of):
+def test_runs_that_do_not_rise_with_intensity_have_no_curve(base, of):
     rng = np.random.default_rng(3)
     logs = rng.normal(0.0, 0.6, COUNT)
     response = np.exp(-1.5 + 1.3 * logs + 0.35 * rng.standard_normal(COUNT))
@@ -201,7 +201,7 @@ def test_runs_that_an_intensity_parts_the_wrong_way_have_no_curve(base, of):
     assert np.isnan(found.median_intensity_upper_bound)
 
 
-def test_a_logistic_curve_without_a_fit_is_a_step_or_level():
+def test_degenerate_logistic_fits_have_a_status():
     logs = np.array([0.0, 1.0, 2.0, 3.0])
     parted = fit_logistic(logs, np.array([0, 0, 1, 1]))
     assert parted.status is FragilityStatus.SEPARATED
@@ -234,7 +234,7 @@ def test_motions_that_are_run_twice_have_no_bounds(base):
     np.testing.assert_allclose(found.median_intensity, once.median_intensity, rtol=1e-3)
 
 
-def test_a_cloud_gives_a_rate_and_a_file(base, tmp_path):
+def test_cloud_yields_annual_rates_and_writes_netcdf(base, tmp_path):
     runs = made(base, seed=3)
     found = rf.cloud_analysis(runs, "strength", limits=[0.3])
     hazard = {"intensity": (np.geomspace(0.01, 50, 9), "m"), "rate": np.geomspace(1, 1e-6, 9)}
@@ -259,7 +259,7 @@ def test_a_cloud_gives_a_rate_and_a_file(base, tmp_path):
         ({"intensity": "strenght"}, ComponentError, "intensity must be one of"),
     ],
 )
-def test_what_cannot_be_is_refused(base, options, error, words):
+def test_invalid_cloud_arguments_are_refused(base, options, error, words):
     with pytest.raises(error, match=words):
         rf.cloud_analysis(made(base), **{"intensity": "strength", **options})
     with pytest.raises(StudyError, match="3 runs have a verdict"):
@@ -268,7 +268,7 @@ def test_what_cannot_be_is_refused(base, options, error, words):
         rf.cloud_analysis(made(base).isel(motion=slice(1)), "strength")
 
 
-def test_runs_that_slide_without_rocking_are_not_said_to_stay():
+def test_sliding_runs_are_not_reported_as_at_rest():
     block, floor = (
         rf.Block(width="0.8 m", height="3.2 m", mass="5.5 t"),
         rf.RigidGround(friction=0.2),
@@ -288,7 +288,7 @@ def two_widths():
     return rf.sweep(SYSTEM, motions, width=["0.5 m", "0.6 m"], accuracy="fast", progress=False)
 
 
-def test_several_structures_are_a_cloud_only_on_request(two_widths):
+def test_several_structures_are_pooled_only_on_request(two_widths):
     with pytest.raises(StudyError, match=r"several structures, by width; .*isel\(width=0\)"):
         rf.cloud_analysis(two_widths, "PGA")
     pooled = rf.cloud_analysis(two_widths, "PGA", pooled=["width"])
@@ -299,7 +299,7 @@ def test_several_structures_are_a_cloud_only_on_request(two_widths):
         rf.cloud_analysis(two_widths, "PGA", pooled=["wdth"])
 
 
-def test_cases_of_many_structures_are_pooled_by_their_table(two_widths):
+def test_table_of_structures_is_pooled_only_by_case(two_widths):
     columns = {"width": ["0.5 m"] * 3 + ["0.6 m"] * 3, "motion": [*two_widths.motion.values]}
     motions = {
         f"m{k}": rf.GroundMotion.sine_pulse(f"{3 + 0.1 * k} m/s^2", "1 Hz") for k in range(6)
@@ -310,6 +310,6 @@ def test_cases_of_many_structures_are_pooled_by_their_table(two_widths):
     assert rf.cloud_analysis(runs, "PGA", pooled=["case"]).sizes["run"] == 6
 
 
-def test_a_cloud_of_a_changed_system_does_not_tell_of_the_one_before(two_widths):
+def test_cloud_of_a_varied_system_drops_the_stored_system(two_widths):
     assert "system_json" not in rf.cloud_analysis(two_widths.isel(width=1), "PGA").attrs
     assert "system_json" in rf.cloud_analysis(two_widths.isel(width=1).drop_vars("width")).attrs

@@ -22,7 +22,7 @@ MATRIX = np.array([[1.0, 0.8, -0.5], [0.8, 1.0, 0.0], [-0.5, 0.0, 1.0]])
 
 
 @pytest.mark.parametrize("sampling", Sampling)
-def test_distributions_stay_and_ranks_go_together(sampling):
+def test_imposed_correlation_preserves_marginal_distributions(sampling):
     count = 4096
     cube = impose_correlation(
         draw_sample((None,) * 2, count, sampling, 3), MATRIX, stratified=sampling is Sampling.LATIN
@@ -37,7 +37,7 @@ def test_distributions_stay_and_ranks_go_together(sampling):
         assert np.array_equal(strata, np.tile(np.arange(count)[:, None], 3))
 
 
-def test_cases_have_the_distributions_and_correlations_asked_for():
+def test_cases_have_requested_distributions_and_correlations():
     found = rf.probability_of_overturning(
         SYSTEM, PULSE, spread=SPREAD, correlation=PAIRS, cases=600, free_vibration="1 s",
         accuracy="fast", progress=False,
@@ -57,7 +57,7 @@ def test_cases_have_the_distributions_and_correlations_asked_for():
     assert np.array_equal(found.width, again.width)
 
 
-def test_correlation_changes_the_probability_as_brute_force_has_it():
+def test_correlated_probability_matches_monte_carlo():
     """Of a pulse far longer than the block's time it tips where width over height is too little."""
     slow = rf.GroundMotion.half_sine_pulse("2.6 m/s^2", "40 s")
     spread = {"width": ("normal", "0.5 m", "0.04 m"), "height": ("normal", "2 m", "0.16 m")}
@@ -85,6 +85,6 @@ def test_correlation_changes_the_probability_as_brute_force_has_it():
         ([[1, 0.9, -0.9], [0.9, 1, 0.9], [-0.9, 0.9, 1]], "not positive definite"),
     ],
 )
-def test_what_is_no_correlation_is_refused(given, words):
+def test_invalid_correlations_are_refused(given, words):
     with pytest.raises(ComponentError, match=words):
         rf.probability_of_overturning(SYSTEM, PULSE, spread=SPREAD, correlation=given, cases=10)

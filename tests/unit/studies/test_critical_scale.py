@@ -62,7 +62,7 @@ def overturns(response):
     return response.status.item() == lies_flat if going_on else bool(response.overturned)
 
 
-def test_runs_at_both_ends_of_every_bracket_have_the_verdicts_told(found):
+def test_bracket_ends_have_the_reported_verdicts(found):
     flips = 0
     for name, (system, motion, options) in CASES.items():
         told, of_run = found[name], {key: options[key] for key in OF_A_RUN if key in options}
@@ -82,7 +82,7 @@ def test_runs_at_both_ends_of_every_bracket_have_the_verdicts_told(found):
     assert flips > len(CASES)
 
 
-def test_every_run_is_told(found):
+def test_every_tried_scale_is_reported(found):
     for name, (system, motion, options) in CASES.items():
         told, of_run = found[name], {key: options[key] for key in OF_A_RUN if key in options}
         assert (np.diff(told.scale) > 0.0).all()
@@ -109,7 +109,7 @@ def test_a_mirrored_motion_gives_the_same_scales():
         xr.testing.assert_equal(one, other)
 
 
-def test_nothing_happens_on_rigid_ground_before_uplift(found):
+def test_critical_scale_search_starts_at_uplift_or_slip_scale(found):
     told = found["rigid ground"]
     acceleration = rf.intensity_measures(SHAKING, block=BLOCK).uplift_acceleration.item()
     peak = rf.intensity_measures(SHAKING).peak_ground_acceleration.item()
@@ -151,14 +151,14 @@ def test_a_block_that_never_overturns_has_no_critical_scale():
     assert told.verdict == "Did not overturn up to 1 times the motion; 1 scale tried up to 1."
 
 
-def test_a_block_that_falls_without_the_motion():
+def test_block_overturning_without_motion_has_zero_critical_scale():
     start = rf.InitialState(angular_velocity="3 rad/s")
     told = rf.critical_scale(ON_PADS, PULSE, initial=start, **SPARING)
     assert told.critical_scale.item() == 0.0
     assert told.verdict.startswith("Overturns without the motion")
 
 
-def test_runs_that_were_cut_off_are_neither():
+def test_unfinished_runs_have_no_verdict():
     limit = rf.Accuracy(rtol=1e-6, max_steps=400)
     options = {**SPARING, "accuracy": limit, "scales": 20, "runs": 20}
     with pytest.warns(SolverWarning, match="could not be finished") as caught:
@@ -201,7 +201,7 @@ def test_the_critical_scale_as_an_intensity(found):
     assert told[relative].item() == expected
 
 
-def test_the_dataset_goes_through_a_file_and_back_to_its_system(found, tmp_path):
+def test_critical_scale_dataset_survives_netcdf_round_trip(found, tmp_path):
     for told in found.values():
         told.to_netcdf(tmp_path / "critical.nc")
         with xr.open_dataset(tmp_path / "critical.nc") as again:
@@ -214,7 +214,7 @@ def test_the_dataset_goes_through_a_file_and_back_to_its_system(found, tmp_path)
         assert told.motion_sha256 in (SHAKING.sha256, PULSE.sha256)
 
 
-def test_what_cannot_be_asked_is_refused():
+def test_invalid_critical_scale_arguments_are_refused():
     wrong = [
         ({"largest": 0.0}, ComponentError, "largest must be greater than zero"),
         ({"largest": "4 m"}, UnitsError, "largest"),
@@ -243,7 +243,7 @@ def test_what_cannot_be_asked_is_refused():
         rf.critical_scale(BLOCK, PULSE)
 
 
-def test_an_interrupt_gives_back_the_runs_until_then(monkeypatch):
+def test_interrupt_returns_completed_runs(monkeypatch):
     calls = itertools.count()
 
     def interrupted(*given):

@@ -23,7 +23,7 @@ def analysis():
 # dynamic analysis ----------------------------------------------------------------------------
 
 
-def test_brackets_of_a_dynamic_analysis_are_those_of_single_runs(analysis, tmp_path):
+def test_brackets_agree_with_single_runs(analysis, tmp_path):
     assert checked(analysis, tmp_path)
     assert analysis.limit_state.values.tolist() == ["uplift", "rotation 0.4", "overturning"]
     assert analysis.capacity_scale.dims == ("limit_state", "motion")
@@ -50,7 +50,7 @@ def test_brackets_of_a_dynamic_analysis_are_those_of_single_runs(analysis, tmp_p
 
 
 @pytest.mark.long
-def test_a_dynamic_analysis_is_that_of_the_mirrored_motions(analysis):
+def test_mirrored_motions_give_the_same_dynamic_analysis(analysis):
     mirrored = rf.incremental_dynamic_analysis(
         SYSTEM, motions(-1.0), scale=np.arange(0.5, 6.1, 0.5), limits=["uplift", 0.4],
         free_vibration="4 s", **QUIET,
@@ -70,7 +70,7 @@ def test_a_dynamic_analysis_agrees_with_the_critical_scale(analysis):
 
 
 @pytest.mark.long
-def test_the_period_of_a_spectral_intensity_is_kept_and_told():
+def test_period_of_a_spectral_intensity_is_stored_and_labelled():
     from matplotlib import pyplot
 
     measure = "pseudo_spectral_acceleration"
@@ -100,7 +100,7 @@ def test_the_period_of_a_spectral_intensity_is_kept_and_told():
     assert rf.plot.dynamic_analysis(plain)[0].get_ylabel().startswith("peak ground acceleration [")
 
 
-def test_a_scan_that_starts_too_high_says_that_capacities_lie_below(analysis):
+def test_scan_starting_too_high_warns_of_lower_capacities(analysis):
     suite = motions()
     over = analysis.sel(limit_state="overturning").capacity_scale
     least = float(np.sort(over)[1:3].mean())  # some motions overturn below it, some above
@@ -126,7 +126,7 @@ def test_a_scan_that_starts_too_high_says_that_capacities_lie_below(analysis):
     assert "only known" not in rf.fragility(analysis, trials="capacities").verdict
 
 
-def test_a_stored_analysis_goes_on_where_it_was(tmp_path, monkeypatch):
+def test_stored_analysis_is_not_run_again(tmp_path, monkeypatch):
     options = {"scale": [1.0, 2.0, 4.0], **FAST}
     kept = rf.incremental_dynamic_analysis(SYSTEM, motions(), store=tmp_path / "s", **options)
     plain = rf.incremental_dynamic_analysis(SYSTEM, motions(), **options)
@@ -165,7 +165,7 @@ def uninterrupted(resolution):
         pytest.param("between rounds", 2, marks=pytest.mark.long),
     ],
 )
-def test_an_interrupted_analysis_says_so_and_goes_on(tmp_path, monkeypatch, after, kind):
+def test_interrupted_analysis_warns_and_resumes(tmp_path, monkeypatch, after, kind):
     # at a resolution of one brackets are narrowed at once
     some = {"scale": [1.0, 2.0, 4.0], "resolution": 1.0 if after != 2 else 0.02, **FAST}
     options = {**some, "store": tmp_path / "s"}
@@ -207,14 +207,14 @@ def test_an_interrupted_analysis_says_so_and_goes_on(tmp_path, monkeypatch, afte
     assert "interrupted" not in whole.verdict
 
 
-def test_a_verdict_of_one_motion_tells_one_scale(analysis):
+def test_verdict_of_one_motion_names_one_scale(analysis):
     one = analysis.isel(motion=[0])
     scale = one.capacity_scale.sel(limit_state="overturning").item()
     start = f"Of 1 motion 1 overturned, from {scale:.4g} times the motion on"
     assert one.rockframe.verdict.startswith(start)
 
 
-def test_a_fragility_of_capacities(analysis):
+def test_fragility_can_be_fitted_to_capacities(analysis):
     found = rf.fragility(analysis, "PGA", trials="capacities")
     capacity = analysis.capacity_scale.sel(limit_state="overturning")
     pga = [one.peak_acceleration.m_as("m/s^2") for one in motions().values()]
@@ -231,7 +231,7 @@ def test_a_fragility_of_capacities(analysis):
 
 
 @pytest.mark.long
-def test_capacities_hang_neither_on_the_first_row_nor_on_its_step():
+def test_capacities_do_not_depend_on_scan_step():
     suite = motions()
     found = {
         step: rf.incremental_dynamic_analysis(
@@ -255,7 +255,7 @@ def test_capacities_hang_neither_on_the_first_row_nor_on_its_step():
     assert medians == pytest.approx([medians[1]] * 3, rel=0.05)
 
 
-def test_what_was_not_exceeded_has_an_infinite_capacity_and_is_counted():
+def test_unexceeded_limit_states_have_infinite_counted_capacities():
     found = rf.incremental_dynamic_analysis(
         SYSTEM, motions(), scale=[0.5, 1.0, 1.7], limits=["uplift"], **FAST
     )
@@ -271,7 +271,7 @@ def test_what_was_not_exceeded_has_an_infinite_capacity_and_is_counted():
     assert (found.capacity_resolution <= 0.02).all()
 
 
-def test_a_fragility_of_an_analysis_is_that_of_its_runs_unless_asked_for_capacities(analysis):
+def test_fragility_of_an_analysis_uses_runs_by_default(analysis):
     runs = rf.sweep(SYSTEM, motions(), scale=analysis.scale.values, free_vibration="4 s", **QUIET)
     every = rf.fragility(runs, limits=["uplift", 0.4])
     assert every.attrs["trials"] == "runs"
@@ -282,7 +282,7 @@ def test_a_fragility_of_an_analysis_is_that_of_its_runs_unless_asked_for_capacit
         rf.fragility(runs, trials="flips")
 
 
-def test_brackets_split_where_a_third_verdict_lies_between():
+def test_brackets_split_at_a_third_verdict():
     truth = [(1.234, 2.0), (1.301, -1.0), (3.3, 0.0), (9.0, 0.0)]
 
     def verdict(scale):

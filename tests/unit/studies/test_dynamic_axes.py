@@ -35,7 +35,7 @@ def alone(width: str, restitution: float) -> xr.Dataset:
     return rf.incremental_dynamic_analysis(system, SUITE, intensity="PGA", **HOW)
 
 
-def test_each_structure_has_the_capacities_that_it_has_alone(wide):
+def test_each_structure_has_the_capacities_of_a_separate_analysis(wide):
     assert wide.capacity_scale.dims == ("limit_state", "width", "restitution", "motion")
     assert int(np.isfinite(wide.capacity_scale.isel(limit_state=-1)).sum()) > 0
     assert wide.censored_count.dims == ("limit_state", "width", "restitution")
@@ -69,7 +69,7 @@ def test_each_structure_has_a_fragility_of_its_own(wide, trials):
     np.testing.assert_array_equal(pooled.trial_count, every)
 
 
-def test_one_structure_is_drawn_and_has_fractiles(wide):
+def test_single_structure_can_be_plotted_and_has_fractiles(wide):
     with pytest.raises(SchemaError, match=r"by width \(2\), restitution \(2\)"):
         rf.plot.dynamic_analysis(wide)
     one = wide.isel(width=[0], restitution=[1])
@@ -79,7 +79,7 @@ def test_one_structure_is_drawn_and_has_fractiles(wide):
     np.testing.assert_array_equal(curves.intensity_fractile, same.intensity_fractile)
 
 
-def test_a_part_tells_of_itself(wide):
+def test_subset_has_its_own_verdict(wide):
     assert wide.rockframe.verdict == wide.verdict
     one = wide.isel(width=0, restitution=1)
     assert one.rockframe.verdict == alone("0.5 m", 0.8).verdict
@@ -103,7 +103,7 @@ def test_the_system_may_be_a_function_of_the_axes(wide):
     np.testing.assert_array_equal(found.capacity_scale.squeeze(), wide.capacity_scale.squeeze())
 
 
-def test_a_study_of_axes_goes_on_and_comes_back(tmp_path, wide):
+def test_study_of_axes_survives_store_and_netcdf(tmp_path, wide):
     given = {"width": ["0.5 m", "0.7 m"], "restitution": [0.75, 0.8]}
     kept = rf.incremental_dynamic_analysis(
         SYSTEM, SUITE, axes=given, store=tmp_path / "kept", intensity="PGA", **HOW
@@ -130,11 +130,11 @@ def test_a_study_of_axes_goes_on_and_comes_back(tmp_path, wide):
         ({"width": ["1 m"], "radius": ["2 m"]}, "determine its size twice"),
     ],
 )
-def test_axes_that_are_wrong_are_told(given, match):
+def test_invalid_axes_are_refused(given, match):
     with pytest.raises(StudyError, match=match):
         rf.incremental_dynamic_analysis(SYSTEM, SUITE, **given, **HOW)
 
 
-def test_an_axis_is_given_once():
+def test_duplicate_axis_is_refused():
     with pytest.raises(TypeError, match="got 'width' twice"):
         rf.incremental_dynamic_analysis(SYSTEM, SUITE, axes={"width": ["1 m"]}, width=["2 m"])

@@ -24,7 +24,7 @@ def fail(runs, **place):
         runs[name][place] = np.nan
 
 
-def test_a_sweep_over_structures_is_no_ensemble():
+def test_sweep_over_structures_needs_pooling():
     runs = rf.sweep(SYSTEM, motions(), scale=[1.0, 2.0], width=["0.4 m", "0.5 m"], **HOW)
     with pytest.raises(ComponentError, match=r"over scale, width .*pooled=\('scale', 'width'\)"):
         rf.ensemble_statistics(runs)
@@ -53,7 +53,7 @@ def test_members_without_a_result_are_counted():
     assert found.verdict == "4 members; 1 without a result are left out; bands of confidence 0.95"
 
 
-def test_a_sample_tells_its_motions_and_what_was_left_out():
+def test_sample_verdict_reports_motions_and_omitted_cases():
     drawn = rf.probability_of_overturning(
         SYSTEM, motions(), cases=40, spread={"scale": ("uniform", 2.0, 8.0)}, **HOW
     )
@@ -75,7 +75,7 @@ def test_a_dynamic_analysis_counts_runs_without_a_verdict():
     assert "2 of 9 runs of the scan have no verdict" in verdict_of_analysis(analysis)
 
 
-def test_a_map_does_not_draw_runs_without_a_verdict_as_standing():
+def test_map_masks_runs_without_a_verdict():
     from matplotlib import pyplot
 
     found = rf.overturning_map(
@@ -112,7 +112,7 @@ def test_a_spectrum_counts_runs_without_a_verdict(monkeypatch):
 
 
 @pytest.mark.parametrize("count", [44, 90])
-def test_the_index_is_the_adjusted_correlation_ratio(count):
+def test_first_order_index_is_the_adjusted_correlation_ratio(count):
     """One less the variance within groups over that of all, each by its degrees of freedom."""
     rng = np.random.default_rng(count)
     values = rng.normal(size=count)

@@ -33,7 +33,7 @@ def runs_of(peak, undecided=lambda scale: False):
     return look, asked
 
 
-def test_one_flip_is_bracketed_as_narrowly_as_asked():
+def test_single_flip_is_bracketed_to_requested_width():
     for width in (1e-2, 1e-5, 1e-12):
         look, _ = runs_of(lambda scale: scale / math.pi)
         [flip] = scan_scales(look, ROW, max_runs=100, width=width).flips()
@@ -42,7 +42,7 @@ def test_one_flip_is_bracketed_as_narrowly_as_asked():
         assert flip.above - flip.below <= width * flip.above
 
 
-def test_an_island_between_two_scales_is_found_where_peaks_tell_of_it():
+def test_overturning_island_is_found_when_peaks_hint_at_it():
     def peak(scale):
         return 0.2 * scale + 0.8 * math.exp(-((10.0 * (scale - 1.55)) ** 2))
 
@@ -56,7 +56,7 @@ def test_an_island_between_two_scales_is_found_where_peaks_tell_of_it():
     assert len(set(asked)) == len(asked) == len(found.runs) < 100
 
 
-def test_it_says_how_far_apart_the_runs_were():
+def test_sentence_states_the_largest_gap_between_runs():
     """An island that nothing tells of is missed, and the sentence promises nothing else."""
     look, _ = runs_of(lambda scale: 1.5 if 2.001 < scale < 2.099 else 0.05)
     found = scan_scales(look, ROW, max_runs=100, width=1e-4)
@@ -82,7 +82,7 @@ def test_a_run_without_a_verdict_leaves_a_gap():
     assert scan_scales(look, ROW, max_runs=41, width=1e-3).largest_gap == pytest.approx(0.5)
 
 
-def test_without_runs_to_spare_it_says_how_far_it_looked():
+def test_sentence_states_resolved_range_when_runs_are_exhausted():
     def peak(scale):
         return 0.2 * scale + 0.8 * math.exp(-((10.0 * (scale - 1.55)) ** 2))
 
@@ -98,7 +98,7 @@ def test_without_runs_to_spare_it_says_how_far_it_looked():
 
 
 @pytest.mark.parametrize("resolution", [0.05, 0.02, pytest.param(0.005, marks=pytest.mark.long)])
-def test_no_range_wider_than_the_resolution_hides_up_to_where_it_was_followed(resolution):
+def test_no_range_wider_than_resolution_is_missed_in_resolved_range(resolution):
     """Whatever peaks tell: here nothing."""
     start = 1.3
     for length in (1.05, 2.0):
@@ -124,7 +124,7 @@ def test_no_range_wider_than_the_resolution_hides_up_to_where_it_was_followed(re
     assert min(asked[count + 3 :]) > 1.0
 
 
-def test_runs_without_a_verdict_are_neither():
+def test_runs_without_a_verdict_do_not_form_flips():
     look, _ = runs_of(lambda scale: scale / 2.0, undecided=lambda scale: 1.8 < scale < 2.3)
     found = scan_scales(look, ROW, max_runs=200, width=1e-4)
     [flip] = found.flips()
@@ -146,7 +146,7 @@ def test_runs_without_a_verdict_below_the_critical_scale_leave_it_uncertain():
     assert words in flips_sentence(found, width=1e-3, resolution=0.01)
 
 
-def test_no_lesser_scale_is_feared_where_the_least_overturns():
+def test_no_caution_about_lesser_scales_when_the_least_overturns():
     look, _ = runs_of(lambda scale: 1.2)
     text = flips_sentence(
         scan_scales(look, ROW, max_runs=41, width=1e-3, resolution=0.01), width=1e-3
@@ -154,7 +154,7 @@ def test_no_lesser_scale_is_feared_where_the_least_overturns():
     assert text == "Overturns without the motion; 41 scales tried up to 4, at most 0.1 apart."
 
 
-def test_nothing_is_feared_far_from_overturning_nor_looked_into_for_ever():
+def test_refinement_skips_low_peaks_and_terminates():
     look, asked = runs_of(lambda scale: 0.05 * abs(math.sin(40.0 * scale)))
     scan_scales(look, ROW, max_runs=10_000, width=1e-3)
     assert len(asked) == len(ROW)
@@ -165,7 +165,7 @@ def test_nothing_is_feared_far_from_overturning_nor_looked_into_for_ever():
     assert all(b - a > 0.49 * MIN_INTERVAL * b for a, b in pairwise(scales))
 
 
-def test_ranges_that_stand_again_are_named_up_to_three():
+def test_at_most_three_surviving_ranges_are_named():
     row = [0.05 + 0.1 * k for k in range(40)]
     for length, ranges in ((2.0, 1), (1.0, 3), (0.5, 7)):
         look, _ = runs_of(lambda at, length=length: 1.5 if at % length >= 0.5 * length else 0.5)
@@ -178,7 +178,7 @@ def test_ranges_that_stand_again_are_named_up_to_three():
         assert (f"and in {ranges - 3} further ranges;" in text) == (ranges > 3)
 
 
-def test_an_interrupt_leaves_what_was_found_until_then():
+def test_interrupted_scan_retains_completed_runs():
     def peak(scale):
         return 0.2 * scale + 0.8 * math.exp(-((10.0 * (scale - 1.55)) ** 2))
 

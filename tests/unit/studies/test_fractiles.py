@@ -26,7 +26,7 @@ def made(rows, fell, names="abcdefghijk"):
     )
 
 
-def test_fractiles_of_three_motions_by_hand():
+def test_fractiles_of_three_motions_match_hand_calculation():
     rows = [[0.1, 0.2, 0.3, 0.4, 0.5], [0.2, 0.3, 0.6, 1.0, 1.0], [0.3, 0.5, 1.0, 0.8, 1.0]]
     fell = [[0, 0, 0, 0, 0], [0, 0, 0, 1, 1], [0, 0, 1, 0, 1]]
     runs = made(rows, np.array(fell, dtype=bool))
@@ -49,7 +49,7 @@ def test_fractiles_of_three_motions_by_hand():
     )
 
 
-def test_fractiles_of_rising_curves_are_one_another_s_inverse():
+def test_response_and_intensity_fractiles_of_rising_curves_are_inverse():
     """Of n curves that rise the k-th response at an intensity is the (n - k + 1)-th intensity."""
     rng = np.random.default_rng(4)
     rows = np.cumsum(rng.uniform(0.02, 0.2, size=(11, len(SCALES))), axis=1)
@@ -68,7 +68,7 @@ def test_fractiles_of_rising_curves_are_one_another_s_inverse():
     np.testing.assert_allclose(curves.response_fractile, expected, rtol=1e-12)
 
 
-def test_a_dynamic_analysis_overturns_where_its_brackets_say():
+def test_fractile_curves_overturn_within_analysis_brackets():
     motions = {
         f"seed {k}": rf.GroundMotion.stochastic(7.0, "5 km", seed=k, stress_drop="20 MPa")
         for k in range(5)
@@ -104,7 +104,7 @@ def test_a_dynamic_analysis_overturns_where_its_brackets_say():
         ({"intensity": "PGB"}, ComponentError, "intensity must be one of"),
     ],
 )
-def test_what_cannot_be_is_refused(options, error, words):
+def test_invalid_fractile_arguments_are_refused(options, error, words):
     runs = made([[0.1] * 5, [0.2] * 5], np.zeros((2, 5), dtype=bool))
     with pytest.raises(error, match=words):
         rf.fractile_curves(runs, **options)
@@ -112,7 +112,7 @@ def test_what_cannot_be_is_refused(options, error, words):
         rf.fractile_curves(runs.isel(scale=0))
 
 
-def test_curves_of_a_changed_system_do_not_tell_of_the_one_before():
+def test_fractile_curves_of_a_varied_system_drop_the_stored_system():
     system = rf.System(rf.Block(width="0.5 m", height="2 m", mass="400 kg"))
     pulses = {f"{k}": rf.GroundMotion.sine_pulse(f"{3 + k} m/s^2", "1 Hz") for k in range(3)}
     given = {"scale": [1.0, 1.5], "accuracy": "fast", "progress": False}
@@ -121,7 +121,7 @@ def test_curves_of_a_changed_system_do_not_tell_of_the_one_before():
     assert "system_json" not in rf.fractile_curves(runs.isel(width=1)).attrs
 
 
-def test_the_verdict_tells_the_capacity_and_not_the_next_point_of_the_curve():
+def test_verdict_states_the_capacity_rather_than_the_next_grid_point():
     """The least intensity at which half of the motions overturn is that of a run."""
     rows = [[0.1, 0.2, 0.3, 1.0, 1.0], [0.2, 0.3, 0.6, 1.0, 1.0], [0.1, 0.1, 0.1, 0.1, 0.1]]
     fell = np.array([[0, 0, 0, 1, 1], [0, 0, 0, 1, 1], [0, 0, 0, 0, 0]], dtype=bool)
@@ -134,7 +134,7 @@ def test_the_verdict_tells_the_capacity_and_not_the_next_point_of_the_curve():
     assert alone == "Of 1 motion 1 overturned at some scale from 0.5 to 2.5, first at 1.999."
 
 
-def test_a_range_of_overturning_between_two_points_of_the_curve_counts():
+def test_overturning_between_curve_points_is_counted():
     """One that is narrower than the distance of the points at which curves are given."""
     runs = rf.incremental_dynamic_analysis(
         SYSTEM, rf.GroundMotion.sine_pulse("4 m/s^2", "1 Hz"), scale=[0.5, 1, 1.5, 2, 50],
@@ -144,7 +144,7 @@ def test_a_range_of_overturning_between_two_points_of_the_curve_counts():
     assert f"first at {capacity:.4g}" in rf.fractile_curves(runs).attrs["verdict"]
 
 
-def test_runs_that_are_left_out_are_told():
+def test_omitted_runs_are_reported():
     runs = made([[0.1, 0.2, 0.3, 0.4, 0.5]] * 2, np.zeros((2, 5), dtype=bool))
     whole = rf.fractile_curves(runs).attrs["verdict"]
     status = runs["status"].copy()

@@ -32,7 +32,7 @@ def parameters(found):
     return -intercept / slope, 1.0 / slope
 
 
-def test_the_fit_is_that_of_baker():
+def test_fit_reproduces_published_baker_example():
     found = of_baker()
     assert found.median_intensity.item() / GRAVITY == pytest.approx(1.0761158, abs=6e-8)
     assert found.dispersion.item() == pytest.approx(0.4292372, abs=6e-8)
@@ -45,7 +45,7 @@ def test_the_fit_is_that_of_baker():
     assert at == pytest.approx(stats.norm.cdf(log), abs=1e-4)
 
 
-def test_profile_intervals_are_those_of_brute_force():
+def test_profile_intervals_match_brute_force():
     """For each value of a parameter the other one is chosen anew."""
     found = of_baker(confidence=0.9)
     logs, over = np.log(LEVELS), np.array(EXCEEDED)
@@ -75,7 +75,7 @@ def test_profile_intervals_are_those_of_brute_force():
             assert bound == pytest.approx(expected, abs=2e-4), (names[which], end)
 
 
-def test_bounds_of_shares_are_those_of_scipy():
+def test_clopper_pearson_bounds_match_scipy():
     cases = [(0, 40), (4, 40), (40, 40), (1, 3)]
     lower, upper = clopper_pearson(*np.array(cases).T, 0.95)
     for (over, count), low, high in zip(cases, lower, upper, strict=True):
@@ -88,7 +88,7 @@ def test_bounds_of_shares_are_those_of_scipy():
     assert found.stripe_intensity.values == pytest.approx(np.array(LEVELS) * GRAVITY)
 
 
-def test_brackets_are_fitted_as_lognormals_are():
+def test_bracketed_capacities_are_fitted_as_censored_lognormals():
     """Narrow brackets give the mean and the deviation of logarithms; open ends are censored."""
     rng = np.random.default_rng(3)
     logs = rng.normal(0.4, 0.3, 60)
@@ -110,7 +110,7 @@ def test_brackets_are_fitted_as_lognormals_are():
     )
 
 
-def test_slopes_and_curvatures_are_those_of_the_likelihood():
+def test_scores_and_information_are_derivatives_of_likelihood():
     rng = np.random.default_rng(5)
     lower = rng.normal(size=(30, 2))
     upper = lower + rng.uniform(0.01, 2.0, (30, 2))
@@ -135,7 +135,7 @@ def test_slopes_and_curvatures_are_those_of_the_likelihood():
     assert information(trials, at) == pytest.approx(-np.array(rows), rel=1e-6, abs=1e-6)
 
 
-def test_the_tails_keep_their_digits():
+def test_likelihood_is_accurate_in_the_tails():
     logs = np.log(np.array(LEVELS))[:, None]
     for weight in (1.0, 1e6):
         trials = Trials.from_verdicts(logs, weight * np.array(EXCEEDED), weight * np.full(8, 40.0))
@@ -153,7 +153,7 @@ def test_the_tails_keep_their_digits():
 
 
 @pytest.mark.wide
-def test_bands_hold_as_often_as_they_say():
+def test_sandwich_bands_have_nominal_coverage():
     """Clusters of dependent trials: bands that take them for independent are too narrow."""
     rng = np.random.default_rng(11)
     levels = np.log(np.geomspace(0.3, 3.0, 8))
@@ -186,7 +186,7 @@ def test_two_measures_find_the_coefficients():
     assert (np.abs(found.coefficients - [-0.3, 2.0, 1.0]) < 3.5 * errors).all()
 
 
-def test_what_has_no_fit_says_so():
+def test_counts_without_a_fit_have_a_status():
     cases = {
         FragilityStatus.NONE_EXCEEDED: [0, 0, 0],
         FragilityStatus.ALL_EXCEEDED: [5, 5, 5],
@@ -254,7 +254,7 @@ def runs():
     )
 
 
-def test_runs_are_counted_by_what_they_exceed(runs):
+def test_runs_are_counted_by_exceeded_limit_state(runs):
     found = rf.fragility(runs, "PGA", limits=["uplift", 0.3])
     assert found.limit_state.values.tolist() == ["uplift", "rotation 0.3", "overturning"]
     assert found.rotation_limit.values.tolist() == [0.0, 0.3, 1.0]
@@ -281,7 +281,7 @@ def test_runs_are_counted_by_what_they_exceed(runs):
     assert found.attrs["bands"] == "jackknife"
 
 
-def test_intensities_are_those_of_the_scaled_motions(runs):
+def test_intensities_belong_to_the_scaled_motions(runs):
     from rockframe.studies.intensities import Intensity, intensity_of_runs
 
     motion = motions()["seed 2"].scaled(3.0)
@@ -307,7 +307,7 @@ def test_intensities_are_those_of_the_scaled_motions(runs):
     assert pga.sel(motion="seed 2").item() == pytest.approx(scaled, rel=1e-9)
 
 
-def test_a_fragility_over_two_measures_and_one_of_ones_own(runs):
+def test_fragility_accepts_two_measures_and_a_custom_measure(runs):
     both = rf.fragility(runs, ("PGA", "PGV/PGA"), limits=())
     assert both.exceedance_probability.dims == (
         "limit_state", "peak_ground_acceleration", "velocity_to_acceleration_ratio",
@@ -324,7 +324,7 @@ def test_a_fragility_over_two_measures_and_one_of_ones_own(runs):
         rf.fragility(runs, "magnitude")
 
 
-def test_numbers_of_ones_own_are_those_of_the_labels(runs):
+def test_custom_measure_is_aligned_by_labels(runs):
     measure = rf.intensity_measures(motions())
     own = (measure.peak_ground_velocity * runs.scale).rename("mine").assign_attrs(units="m s^-1")
     expected = rf.fragility(runs, own)
@@ -339,7 +339,7 @@ def test_numbers_of_ones_own_are_those_of_the_labels(runs):
         rf.fragility(runs, twice)
 
 
-def test_files_hold_a_fragility(runs, tmp_path):
+def test_fragility_survives_netcdf_round_trip(runs, tmp_path):
     for found in (rf.fragility(runs), rf.fragility(runs, ("PGA", "PGV"))):
         found.to_netcdf(tmp_path / "fragility.nc")
         with xr.open_dataset(tmp_path / "fragility.nc") as again:
@@ -347,7 +347,7 @@ def test_files_hold_a_fragility(runs, tmp_path):
             assert again.attrs["verdict"] == found.attrs["verdict"]
 
 
-def test_a_sweep_from_a_file_asks_for_its_records(tmp_path):
+def test_fragility_of_a_reopened_sweep_requires_its_records(tmp_path):
     records = [
         rf.GroundMotion.from_arrays(
             (np.concatenate([[0.0], np.random.default_rng(k).normal(size=300), [0.0]]), "m/s^2"),
@@ -367,7 +367,7 @@ def test_a_sweep_from_a_file_asks_for_its_records(tmp_path):
     xr.testing.assert_equal(rf.fragility(again, limits=(), motions=records), found)
 
 
-def test_a_row_for_pelicun(runs):
+def test_pelicun_export_writes_one_row(runs):
     found = rf.fragility(runs, "PGA", limits=[0.3])
     row = rf.export.to_pelicun(found, "E.1", demand="Peak Floor Acceleration", directional=True)
     assert row.index.tolist() == ["E.1"]
@@ -404,7 +404,7 @@ def test_openquake_reads_the_same_probabilities(runs, tmp_path):
         assert (one(levels[0] * np.array([1e-9, 0.1, 0.6, 0.99])) == 0.0).all()
 
 
-def test_pelicun_damages_as_often_as_the_curve_tells(tmp_path):
+def test_pelicun_samples_damage_at_the_exported_probability(tmp_path):
     pelicun = pytest.importorskip("pelicun.assessment", reason="needs pelicun")
     found = of_counts(([0.2, 0.3, 0.4, 0.6, 0.8], "g_0"), [1, 4, 6, 13, 16], 20)
     rf.export.to_pelicun(found, "cabinet").to_csv(tmp_path / "library.csv")
@@ -434,7 +434,7 @@ def test_pelicun_damages_as_often_as_the_curve_tells(tmp_path):
     assert shares["cabinet", "0", "1", "0", "1"] == pytest.approx(expected, abs=0.002)
 
 
-def test_a_file_for_openquake(runs, tmp_path):
+def test_openquake_export_writes_a_fragility_model(runs, tmp_path):
     from lxml import etree
 
     found = rf.fragility(runs, "PGA", limits=[0.3])
@@ -476,7 +476,7 @@ def test_a_file_for_openquake(runs, tmp_path):
     assert rf.export.to_openquake({"b": velocity}, file).read_text() == text  # its own
 
 
-def test_a_median_beyond_all_numbers_is_infinite():
+def test_median_beyond_float_range_is_infinite():
     counts = {"intensity": ([1.0, 2.0], "m/s^2"), "exceeded": [100_000, 100_010], "trials": 10**6}
     found = rf.fragility(counts, "PGA")
     assert found.median_intensity == np.inf
@@ -484,7 +484,7 @@ def test_a_median_beyond_all_numbers_is_infinite():
     assert "median" in found.verdict
 
 
-def test_a_verdict_tells_of_another_limit_state_where_none_overturn():
+def test_verdict_uses_another_limit_state_if_none_overturn():
     slides = rf.System(rf.Block(width="1 m", height="1.2 m", mass="300 kg"),
                        rf.RigidGround(friction=0.3))  # fmt: skip
     suite = {f"{f} Hz": rf.GroundMotion.sine_pulse("4 m/s^2", f"{f} Hz") for f in (0.8, 1, 1.3)}

@@ -48,7 +48,7 @@ def by_hand(logs, over, cluster):
 
 
 @pytest.mark.parametrize("motions", [3, 6])
-def test_the_sandwich_is_that_of_its_definition(motions):
+def test_sandwich_covariance_follows_its_definition(motions):
     """The factor for few clusters is 1.5 with three of them, 1.2 with six."""
     logs, over, cluster = runs_of(np.random.default_rng(4), motions, 0.5)
     best, covariance = by_hand(logs, over, cluster)
@@ -58,7 +58,7 @@ def test_the_sandwich_is_that_of_its_definition(motions):
     assert found.covariance == pytest.approx(covariance, rel=1e-4, abs=1e-6)
 
 
-def test_the_sandwich_of_counts_takes_each_trial_for_a_cluster():
+def test_sandwich_of_counts_treats_each_trial_as_a_cluster():
     logs, over, count = np.log([0.5, 1.0, 2.0]), np.array([1.0, 2.0, 3.0]), np.full(3, 4.0)
     found = fit(Trials.from_verdicts(logs[:, None], over, count), Bands.SANDWICH)
     each = [(one, 1.0) for one, k in zip(logs, over, strict=True) for _ in range(int(k))]
@@ -81,7 +81,7 @@ def test_the_jackknife_leaves_out_each_motion_in_turn():
     assert found.covariance == pytest.approx(5.0 / 6.0 * spread.T @ spread, rel=1e-3, abs=1e-5)
 
 
-def test_bounds_by_jackknife_are_those_of_its_definition():
+def test_jackknife_bounds_follow_their_definition():
     """Student's t of the motions but one, about a dispersion that is not too small on average."""
     motions = 6
     logs, over, cluster = runs_of(np.random.default_rng(4), motions, 0.5)
@@ -146,7 +146,7 @@ def test_separated_counts_have_the_bounds_of_their_likelihood():
     assert "the median lies from" in found.verdict
 
 
-def test_bounds_of_single_runs_hold_also_where_an_intensity_separates_them():
+def test_separated_single_runs_have_bounds_with_coverage():
     """One sample in three of ten runs is separated, and has bounds like the others."""
     rng, samples, runs = np.random.default_rng(5), [], 10
     for _ in range(150):
@@ -166,7 +166,7 @@ def test_bounds_of_single_runs_hold_also_where_an_intensity_separates_them():
         assert float(inside[bounded].mean()) >= 0.9, name
 
 
-def test_brackets_have_the_bounds_of_their_likelihood():
+def test_bracketed_capacities_have_likelihood_bounds():
     """Rays towards slopes below zero, where brackets have no likelihood, end before these."""
     ends = np.log([[0.80, 0.75, 1.11, 0.54, 0.85], [1.07, 1.00, 1.67, 1.08, 1.28]])
     lower, upper = ends[:, :, None]
@@ -206,7 +206,7 @@ def held(samples, dispersion, bands):
 
 @pytest.mark.wide
 @pytest.mark.parametrize("motions", [10, 20])
-def test_bounds_by_sandwich_hold_as_often_as_is_said(motions):
+def test_sandwich_bounds_have_documented_coverage(motions):
     rng, samples = np.random.default_rng(8), []
     for _ in range(200):
         logs, over, cluster = runs_of(rng, motions, 0.4)
@@ -218,7 +218,7 @@ def test_bounds_by_sandwich_hold_as_often_as_is_said(motions):
 
 
 @pytest.mark.parametrize("count", [5, 10])
-def test_bounds_by_profile_hold_as_often_as_is_said(count):
+def test_profile_bounds_have_documented_coverage(count):
     """Of known capacities that follows from Student's and from the chi-squared distribution."""
     said = COVERAGE[Bands.PROFILE][count]
     drop = stats.chi2.ppf(0.95, 1)
@@ -253,7 +253,7 @@ def test_too_few_motions_have_no_bounds():
                 assert found[f"{name}_{end}_bound"].isnull().all() == lacking, name
 
 
-def test_what_bounds_are_is_said():
+def test_verdict_describes_quality_of_bounds():
     def said(bands, independent, trials=200, confidence=0.95, **more):
         counts = np.array([independent]), np.array([trials])
         return " ".join(bound_sentences(bands, confidence, *counts, kind="motions", **more))
@@ -276,14 +276,14 @@ def test_what_bounds_are_is_said():
                                     "it may be small, and there are no bounds.")  # fmt: skip
 
 
-def test_layouts_arrange_the_last_dimension_fastest():
+def test_reshaping_varies_the_last_dimension_fastest():
     values = {"flat": np.arange(6), "deep": np.zeros((6, 4))}
     found = labelling._reshaped(values, {"width": 3, "limit_state": 2})
     assert found["flat"].tolist() == [[0, 1], [2, 3], [4, 5]]
     assert found["deep"].shape == (3, 2, 4)
 
 
-def test_pages_tell_what_the_code_tells():
+def test_documented_coverage_table_matches_code():
     heads = {
         "guide/fragility.md": "| bounds by | of | the median in | the dispersion in |",
         "theory/fragility.md": "| bounds | independent | median | dispersion |",

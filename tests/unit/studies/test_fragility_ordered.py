@@ -23,7 +23,7 @@ def sample(seed, count=80, dispersion=0.5):
 
 
 @pytest.mark.parametrize("seed", range(3))
-def test_the_likelihood_is_greatest_where_a_general_search_finds_it(seed):
+def test_ordered_fit_matches_nelder_mead(seed):
     logs, verdicts = sample(seed)
     fits = ordered_fits(logs, verdicts, np.arange(len(logs)), NAMES, Bands.SANDWICH)
     count = verdicts.sum(axis=0).astype(int)
@@ -46,7 +46,7 @@ def test_the_likelihood_is_greatest_where_a_general_search_finds_it(seed):
         assert -intercept / slope == pytest.approx(median, abs=1e-6)
 
 
-def test_one_limit_state_is_the_usual_fit():
+def test_single_limit_state_reduces_to_the_usual_fit():
     logs, verdicts = sample(4)
     trials = Trials.from_verdicts(
         logs[:, None], verdicts[1], np.ones(len(logs)), np.arange(len(logs))
@@ -59,7 +59,7 @@ def test_one_limit_state_is_the_usual_fit():
 
 
 @pytest.mark.long
-def test_bounds_hold_the_median_and_the_dispersion():
+def test_jackknife_bounds_cover_median_and_dispersion():
     """Of 60 samples of 40 runs, by the jackknife, on logarithms: nominal 95 %."""
     held = np.zeros(2)
     for seed in range(60):
@@ -100,7 +100,7 @@ def test_curves_of_runs_do_not_cross():
     assert rf.plot.fragility(common)
 
 
-def test_limit_states_without_a_fit_leave_the_others():
+def test_limit_states_without_a_fit_do_not_affect_others():
     logs, verdicts = sample(6)
     nobody = np.zeros((1, len(logs)))
     fits = ordered_fits(
@@ -119,7 +119,7 @@ def test_limit_states_without_a_fit_leave_the_others():
     assert {one.status for one in fits} == {FragilityStatus.ONE_INTENSITY}
 
 
-def test_what_has_no_order_is_refused():
+def test_unordered_limit_states_are_refused():
     logs, verdicts = sample(7)
     with pytest.raises(StudyError, match="runs exceed 'complete' and not 'moderate'"):
         ordered_fits(logs, verdicts[[0, 2, 1]], np.arange(len(logs)), NAMES, Bands.SANDWICH)
@@ -132,7 +132,7 @@ def test_what_has_no_order_is_refused():
             rf.fragility(runs, **{"dispersion": "common", **options})
 
 
-def test_without_a_motion_limit_states_that_the_same_runs_exceed_have_one_capacity():
+def test_leave_one_out_merges_limit_states_exceeded_by_the_same_runs():
     """Without the one run that exceeds only the first, nothing keeps the two in order."""
     logs = np.array([-1.2, -0.9, -0.5, -0.3, 0.0, 0.2, 0.3, 0.6, 0.8, 1.1, 1.3])
     count = np.array([0, 0, 0, 2, 1, 0, 2, 0, 2, 2, 2])
@@ -151,7 +151,7 @@ def test_without_a_motion_limit_states_that_the_same_runs_exceed_have_one_capaci
         assert np.isfinite(rows).all()
 
 
-def test_without_a_motion_all_runs_may_exceed_the_first_limit_state():
+def test_leave_one_out_may_leave_a_limit_state_exceeded_by_all():
     logs = np.array([-1.2, -0.9, -0.5, -0.3, 0.0, 0.2, 0.3, 0.6])
     count = np.array([1, 1, 2, 0, 1, 2, 1, 2])
     verdicts = np.stack([count > 0, count > 1]).astype(float)

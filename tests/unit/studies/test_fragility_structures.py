@@ -52,7 +52,7 @@ def test_each_structure_has_a_curve_of_its_own(runs):
         assert f"{last.median_intensity[end].item():.4g}" in found.verdict
 
 
-def test_structures_are_pooled_where_that_is_asked_for(runs):
+def test_structures_are_pooled_on_request(runs):
     found = rf.fragility(runs, "PGV", limits=(), pooled=("width",))
     assert found.median_intensity.dims == ("limit_state",)
     assert found.attrs["pooled"] == "width"
@@ -71,7 +71,7 @@ def test_structures_are_pooled_where_that_is_asked_for(runs):
         rf.fragility(runs, pooled="scale")
 
 
-def test_rows_of_a_table_are_of_one_structure_where_they_are_alike(runs):
+def test_equal_table_rows_belong_to_one_structure(runs):
     widths = ["0.4 m"] * len(SCALES) + ["0.8 m"] * len(SCALES)
     table = rf.sweep(SYSTEM, motions(), cases={"width": widths, "scale": SCALES * 2}, **HOW)
     found = rf.fragility(table, "PGV", limits=())
@@ -106,14 +106,14 @@ def test_dimensions_of_analyses_are_structures_or_motions():
     assert rf.fragility(pulses, limits=()).median_intensity.dims == ("limit_state",)
 
 
-def test_an_axis_given_as_the_intensity_tells_no_structures_apart(runs):
+def test_axis_used_as_intensity_does_not_separate_structures(runs):
     by_width = rf.fragility(runs, runs.width, limits=())
     assert by_width.median_intensity.dims == ("limit_state",)
     own = (runs.scale / runs.width).rename("relative_scale").assign_attrs(units="m^-1")
     assert rf.fragility(runs, own, limits=()).median_intensity.dims == ("width", "limit_state")
 
 
-def test_a_structure_for_each_run_is_refused():
+def test_one_structure_per_run_is_refused():
     drawn = rf.probability_of_overturning(
         SYSTEM, motions(), cases=30, **HOW,
         spread={"width": ("uniform", "0.4 m", "0.6 m"), "scale": ("uniform", 1.0, 8.0)},
@@ -123,7 +123,7 @@ def test_a_structure_for_each_run_is_refused():
     assert rf.fragility(drawn, limits=(), pooled="width").trial_count.item() == 30
 
 
-def test_what_was_put_together_is_told_apart(runs):
+def test_concatenated_runs_and_sweeps_are_refused(runs):
     one, other = (rf.sweep(SYSTEM, motions(first), scale=SCALES[:3], **HOW) for first in (0, 10))
     run = SYSTEM.simulate(motions()["seed 0"])
     joined = rf.concat([run, SYSTEM.simulate(motions()["seed 1"])], "motion")
@@ -168,7 +168,7 @@ def test_runs_without_a_verdict_are_counted(runs):
 
 
 @pytest.mark.long
-def test_capacities_that_nobody_knows_are_left_out():
+def test_unknown_capacities_are_omitted():
     """A motion whose runs failed is none that the block withstood."""
     analysis = rf.incremental_dynamic_analysis(
         SYSTEM, motions(count=12), scale=[1.0, 3.0, 6.0, 12.0], **HOW
@@ -194,7 +194,7 @@ def test_capacities_that_nobody_knows_are_left_out():
         rf.fragility(analysis.isel(scale=1), analysis.scale.isel(scale=1), trials="capacities")
 
 
-def test_programs_take_one_structure(runs, tmp_path):
+def test_exports_require_a_single_structure(runs, tmp_path):
     found = rf.fragility(runs, limits=())
     with pytest.raises(ComponentError, match=r"several structures, by width; .*isel\(width=0\)"):
         rf.export.to_pelicun(found, "x")
@@ -205,7 +205,7 @@ def test_programs_take_one_structure(runs, tmp_path):
         assert theta == pytest.approx(found.median_intensity[0].item() / 9.80665, rel=1e-12)
 
 
-def test_figures_tell_structures_apart(runs):
+def test_figures_distinguish_structures(runs):
     from matplotlib import pyplot
 
     found = rf.fragility(runs, "PGV", limits=[0.3])
@@ -234,7 +234,7 @@ def test_an_axis_with_the_name_of_the_measure_is_refused() -> None:
         rf.fragility(runs, "PGA")
 
 
-def test_an_array_with_the_name_of_an_axis_does_not_stand_for_the_axis(runs) -> None:
+def test_measure_named_like_an_axis_does_not_replace_the_axis(runs) -> None:
     """Runs of all widths counted as those of one structure."""
     own = xr.DataArray(np.arange(1.0, 7.0), dims="motion", name="width", attrs={"units": "m"})
     with pytest.raises(ComponentError, match="differ along width, which is also the name"):
@@ -244,7 +244,7 @@ def test_an_array_with_the_name_of_an_axis_does_not_stand_for_the_axis(runs) -> 
     assert "width" not in rf.fragility(runs, runs.width).median_intensity.dims
 
 
-def test_means_of_runs_have_no_fragility(runs) -> None:
+def test_means_of_runs_are_refused(runs) -> None:
     """The mean of the statuses of a run that stands and one that lies flat is a third one's."""
     with xr.set_options(keep_attrs=True), pytest.raises(SchemaError, match="means of runs"):
         rf.fragility(runs.mean("width"), "PGA")

@@ -21,7 +21,7 @@ def texts_of(runs):
     return runs.message.to_numpy().squeeze()
 
 
-def test_a_run_without_histories_tells_of_friction_in_the_same_words():
+def test_friction_warning_does_not_depend_on_histories():
     with pytest.warns(ModelWarning, match=f"{SLIDES} .* of 0.2, ") as told:
         whole = SLIPPERY.simulate(PULSE, free_vibration="3 s")
     with pytest.warns(ModelWarning, match=f"{SLIDES} .* of 0.2, ") as again:
@@ -44,7 +44,7 @@ def test_a_run_without_histories_tells_of_friction_in_the_same_words():
         rf.WinklerSoil(stiffness="6 MPa", damping_ratio=0.2, friction=0.2),
     ],
 )
-def test_cases_of_a_sweep_say_what_single_runs_say(base):
+def test_sweep_cases_report_the_friction_of_single_runs(base):
     system = rf.System(BLOCK, base, sliding="checked")
     frictions = [0.1, 0.5, 10.0]
     most = f"({SLIDES}|the run ends while)"  # on soil more cases still swing than would slide
@@ -76,7 +76,7 @@ def test_cases_of_a_sweep_say_what_single_runs_say(base):
 @pytest.mark.wide
 @pytest.mark.skipif(not COMPILED, reason="lanes are compiled")
 @pytest.mark.parametrize("accuracy", ["fast", "screen"])
-def test_cases_with_a_limit_leave_the_lanes_and_the_others_stay(monkeypatch, accuracy):
+def test_friction_limited_cases_run_outside_lanes(monkeypatch, accuracy):
     def scene(slippery):
         return SLIPPERY if slippery else rf.System(BLOCK)
 
@@ -129,7 +129,7 @@ def test_analyses_count_the_runs_that_would_slide():
     xr.testing.assert_identical(free.peak_rotation, found.peak_rotation)
 
 
-def test_analyses_tell_of_friction():
+def test_analyses_warn_of_sliding():
     with pytest.warns(ModelWarning, match=SLIDES):
         rf.incremental_dynamic_analysis(SLIPPERY, PULSE, scale=[0.5, 1.0])
     with pytest.warns(ModelWarning, match=SLIDES):
@@ -143,7 +143,7 @@ def test_analyses_tell_of_friction():
     assert "cautions" not in found.attrs
 
 
-def test_what_slides_is_told_of_scales_that_are_tried():
+def test_analyses_report_slip_over_tried_scales():
     """A block that slides instead of rocking stands at any scale; how far it goes is said."""
     low = rf.Block(width="1 m", height="2 m", mass="1 t")
     slides = rf.System(low, rf.RigidGround(friction=0.2))

@@ -51,7 +51,7 @@ def test_a_power_law_gives_the_closed_form_of_cornell(curve, exponent):
 
 
 @pytest.mark.parametrize(("exponent", "spread"), [(8.0, 0.4), (4.0, 2.0), (8.0, 2.0), (30.0, 1.5)])
-def test_a_steep_hazard_and_a_wide_spread_are_integrated_as_quadrature_does(
+def test_steep_hazard_and_wide_dispersion_match_quadrature(
     curve, exponent, spread
 ):
     wide = curve.assign(dispersion=curve.dispersion * 0.0 + spread)
@@ -70,7 +70,7 @@ def test_a_steep_hazard_and_a_wide_spread_are_integrated_as_quadrature_does(
     assert (found.rate_share >= 0.0).all()
 
 
-def test_a_median_beyond_the_table_has_no_rate_within(curve):
+def test_median_beyond_the_table_gives_zero_rate(curve):
     far = curve.assign(
         median_intensity=curve.median_intensity * 1e3, dispersion=curve.dispersion * 0.0 + 1e-3
     )
@@ -80,7 +80,7 @@ def test_a_median_beyond_the_table_has_no_rate_within(curve):
     assert found.verdict == "Annual rate of what was counted: 0 within the hazard curve."
 
 
-def test_the_share_beyond_the_trials_is_that_beyond_the_outermost_ones():
+def test_share_outside_trials_matches_numerical_integral():
     """Also where stripes are groups of intensities, about the middle of each."""
     levels = np.geomspace(0.1, 1.5, 61)
     exceeded = np.random.default_rng(4).random(61) < ndtr(np.log(levels / 0.6) / 0.4)
@@ -93,7 +93,7 @@ def test_the_share_beyond_the_trials_is_that_beyond_the_outermost_ones():
     assert found.outside_trials_share.item() == pytest.approx(outside, abs=1e-3)
 
 
-def test_a_table_is_integrated_as_quadrature_does(curve):
+def test_hazard_table_integral_matches_quadrature(curve):
     found = rf.annual_rate(curve, TABLE)
     ends = VALUES * G
 
@@ -135,7 +135,7 @@ def test_a_fragility_in_other_units_has_the_same_rate(curve):
         assert rf.annual_rate(one, TABLE).annual_rate.item() == pytest.approx(rate)
 
 
-def test_a_fragility_in_other_units_is_the_same_to_other_programs(curve, tmp_path):
+def test_exports_do_not_depend_on_units(curve, tmp_path):
     other = in_g(curve)
     told = rf.export.to_pelicun(other, "x")["LS1-Theta_0"].item()
     assert told == pytest.approx(curve.median_intensity.item() / G, rel=1e-12)
@@ -146,7 +146,7 @@ def test_a_fragility_in_other_units_is_the_same_to_other_programs(curve, tmp_pat
     assert files[0] == files[1]
 
 
-def test_bounds_are_the_rates_of_both_curves_of_the_band():
+def test_rate_bounds_are_rates_of_the_band_curves():
     levels = np.geomspace(0.03, 4.0, 12)
     exceeded = [0, 0, 0, 0, 1, 5, 17, 28, 37, 39, 40, 40]
     counts = {"intensity": (levels, "g_0"), "exceeded": exceeded, "trials": 40}
@@ -164,7 +164,7 @@ def test_bounds_are_the_rates_of_both_curves_of_the_band():
 
 
 @pytest.mark.parametrize("known", [(0.5, 60.0), (4.0, 9.0)], ids=["whole", "its middle"])
-def test_points_integrate_a_lognormal_curve_as_its_closed_form(known):
+def test_pointwise_integration_matches_lognormal_closed_form(known):
     x = np.geomspace(*known, 101)
     median, spread = 6.0, 0.45
     values = xr.DataArray(ndtr(np.log(x / median) / spread), dims="x", coords={"x": x})
@@ -174,7 +174,7 @@ def test_points_integrate_a_lognormal_curve_as_its_closed_form(known):
     np.testing.assert_allclose(by_points, exact, rtol=1e-7, atol=1e-12 * exact.sum())
 
 
-def test_separated_trials_are_exceeded_as_often_as_their_median():
+def test_rate_of_separated_trials_equals_hazard_at_median():
     counts = {"intensity": ([0.2, 0.4, 0.8, 1.0], "g_0"), "exceeded": [0, 0, 9, 9], "trials": 9}
     parted = rf.fragility(counts, "PGA")
     found = rf.annual_rate(parted, TABLE)
@@ -183,7 +183,7 @@ def test_separated_trials_are_exceeded_as_often_as_their_median():
     assert reached == pytest.approx(at.item(), rel=1e-9)
 
 
-def test_hazard_in_other_forms_is_the_same(curve):
+def test_hazard_accepts_probabilities_and_dataarrays(curve):
     one = rf.annual_rate(curve, TABLE).annual_rate.item()
     chance = {"intensity": (VALUES, "g_0"), "probability": 1 - np.exp(-50 * RATES), "years": 50}
     assert rf.annual_rate(curve, chance).annual_rate.item() == pytest.approx(one, rel=1e-12)
@@ -193,7 +193,7 @@ def test_hazard_in_other_forms_is_the_same(curve):
     assert rf.annual_rate(curve, array).annual_rate.item() == pytest.approx(one, rel=1e-12)
 
 
-def test_where_an_acceleration_is_expected_g_is_that_of_gravity(curve):
+def test_unit_g_means_gravity_for_accelerations(curve):
     """Elsewhere it is the gram."""
     counted = rf.fragility({**COUNTS, "intensity": (LEVELS[0], "g")}, "PGA")
     assert counted.median_intensity.item() == curve.median_intensity.item()
@@ -213,7 +213,7 @@ def test_where_an_acceleration_is_expected_g_is_that_of_gravity(curve):
 @pytest.mark.parametrize(
     ("unit", "size"), [("g", G), ("cm/s^2", 0.01), ("1", 1.0), ("m s^-2", 1.0)]
 )
-def test_numbers_of_ones_own_have_a_hazard_in_their_unit(unit, size):
+def test_custom_measure_takes_a_hazard_in_its_unit(unit, size):
     pulse = rf.GroundMotion.sine_pulse("1 m/s^2", "1 Hz")
     system = rf.System(rf.Block(width="0.5 m", height="2 m", mass="400 kg"))
     motions = {f"m{k}": pulse.scaled(2.0 + 0.7 * k) for k in range(6)}
@@ -253,7 +253,7 @@ def test_each_structure_and_limit_state_has_its_rate():
     ).all()
 
 
-def test_what_lies_beyond_the_table_is_told(curve):
+def test_rate_beyond_the_hazard_table_warns(curve):
     with pytest.warns(
         ModelWarning, match=r"above 9\.807 m s\^-2, where it ends, 3\d % of the rate"
     ):
@@ -286,30 +286,30 @@ def test_what_lies_beyond_the_table_is_told(curve):
         (3.0, ComponentError, "must be a table"),
     ],
 )  # fmt: skip
-def test_what_is_no_hazard_is_refused(curve, given, error, words):
+def test_invalid_hazard_is_refused(curve, given, error, words):
     with pytest.raises(error, match=words):
         rf.annual_rate(curve, given)
 
 
 @pytest.mark.parametrize("between", [["2 g_0", "1 g_0"], ["0 g_0", "1 g_0"], ["1 g_0"]])
-def test_the_ends_of_a_hazard_that_is_a_function_rise(curve, between):
+def test_hazard_function_range_must_increase(curve, between):
     with pytest.raises(ComponentError, match="two intensities that rise"):
         rf.annual_rate(curve, lambda a: a**-2.0, between=between)
 
 
-def test_a_curve_of_two_intensities_will_do_and_its_return_period_is_told(curve):
+def test_two_point_hazard_gives_a_return_period(curve):
     table = {"intensity": ([0.02, 5.0], "g_0"), "rate": [8e-2, 1e-9]}
     found = rf.annual_rate(curve, table)
     written = re.search(r"a return period of (\d+) years", found.verdict)  # not 2.332e+06
     assert int(written[1]) == pytest.approx(1.0 / found.annual_rate.item(), rel=5e-4)
 
 
-def test_what_is_no_fragility_over_one_measure_is_refused(curve):
+def test_dataset_without_a_fragility_is_refused(curve):
     with pytest.raises(SchemaError, match="found no fragility"):
         rf.annual_rate(curve.drop_vars("exceedance_probability"), TABLE)
 
 
-def test_refusals_of_intensities_are_signed_by_what_was_called(curve):
+def test_intensity_errors_name_the_called_function(curve):
     for wrong in ([1 + 2j], ([0.1, 0.2], "bananas"), [[0.1, 0.2]]):
         with pytest.raises((ComponentError, UnitsError), match=r"^annual_rate: "):
             rf.annual_rate(curve, TABLE | {"intensity": wrong})
@@ -317,7 +317,7 @@ def test_refusals_of_intensities_are_signed_by_what_was_called(curve):
             rf.fragility(COUNTS | {"intensity": wrong}, "PGA")
 
 
-def test_the_one_structure_that_has_a_fragility_is_told_of():
+def test_verdict_names_the_only_structure_with_a_fragility():
     pulses = {f"{k} Hz": rf.GroundMotion.sine_pulse("4 m/s^2", f"{k} Hz") for k in (0.8, 1.1, 1.4)}
     system = rf.System(rf.Block(width="0.5 m", height="2 m", mass="400 kg"))
     runs = rf.sweep(

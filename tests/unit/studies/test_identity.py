@@ -127,7 +127,7 @@ def arguments_of(name):
     return set(inspect.signature(getattr(rf, name)).parameters)
 
 
-def test_every_argument_is_changed_in_turn():
+def test_every_study_argument_is_covered_by_these_tests():
     # what others know are the same numbers, tests/unit/studies/test_known_cases.py
     assert set(SWEEP_CHANGES) | set(KEPT) | {"known"} == arguments_of("sweep")
     for name, (_, changes) in ANALYSES.items():
@@ -146,14 +146,14 @@ def two(base, name, change):
 
 
 @pytest.mark.parametrize("name", SWEEP_CHANGES)
-def test_another_argument_of_a_sweep_is_another_study(name, tmp_path):
+def test_changed_sweep_argument_is_refused_by_its_store(name, tmp_path):
     before, after = two(SWEPT, name, SWEEP_CHANGES[name])
     rf.sweep(**before, store=tmp_path / "study")
     with pytest.raises(StudyError, match=r"found another study, which differs in \w+.* known='"):
         rf.sweep(**after, store=tmp_path / "study")
 
 
-def test_what_changes_no_numbers_is_the_same_study(tmp_path):
+def test_execution_options_do_not_change_the_study(tmp_path):
     from concurrent.futures import ThreadPoolExecutor
 
     plain = rf.sweep(**SWEPT)
@@ -186,7 +186,7 @@ def begun(tmp_path_factory):
         for name in changes
     ],
 )
-def test_a_store_never_serves_other_arguments(analysis, name, begun, tmp_path):
+def test_store_never_returns_results_of_other_arguments(analysis, name, begun, tmp_path):
     base, changes = ANALYSES[analysis]
     before, after = two({"accuracy": "fast", **base}, name, changes[name])
     begun(analysis, before, tmp_path / "study")
@@ -208,7 +208,7 @@ class Asked:
     further: object = None
 
 
-def test_all_fields_are_told_and_none_that_cannot_be():
+def test_description_covers_all_fields_and_refuses_unknown_objects():
     one = Asked(1.0, ("a", "b"))
     others = [
         replace(one, size=np.nextafter(1.0, 2.0)), replace(one, words=("b", "a")),
@@ -230,7 +230,7 @@ def studied(**changes):
     return plan_study(SYSTEM, MOTIONS, {"scale": [1.0]}, None, outputs=["rotation"], **changes)
 
 
-def test_every_field_of_a_study_and_of_what_it_is_made_of_is_told():
+def test_description_of_a_study_covers_nested_fields():
     seen = []
 
     def walked(value, described):
@@ -253,7 +253,7 @@ def test_every_field_of_a_study_and_of_what_it_is_made_of_is_told():
     assert {one.name for one in fields(SweepJob)} <= told_of
 
 
-def test_the_samples_of_a_motion_are_told():
+def test_digest_depends_on_motion_samples():
     si = WEAK.si
     other = replace(si.horizontal, samples=si.horizontal.samples * 1.0000001)
     longer = replace(si.horizontal, time_step=2 * si.time_step)
@@ -264,7 +264,7 @@ def test_the_samples_of_a_motion_are_told():
     assert len({digest_of(description_of(rf.GroundMotion(one))) for one in (si, *changed)}) == 5
 
 
-def test_what_a_function_uses_is_told():
+def test_digest_depends_on_closure_of_a_function():
     def scene_with(density):
         def scene(height):
             return rf.System(rf.Block(width="0.5 m", height=height, mass=f"{density} kg"))
@@ -281,7 +281,7 @@ def test_what_a_function_uses_is_told():
 GIVEN = {"frequency_ratio": 15, "damping_ratio": 0.05, "strength": 0.6, "hardening": 0.1}
 
 
-def test_the_laws_of_a_users_base_are_told(tmp_path):
+def test_digest_depends_on_code_of_a_user_defined_base(tmp_path):
     def digest(module):
         _source_of_class.cache_clear()
         pads = module.YieldingPads(**GIVEN)

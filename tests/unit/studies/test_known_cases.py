@@ -79,7 +79,7 @@ def test_studies_are_combined(tmp_path, ran):
     alike(swept(("9",), [2.0], store=tmp_path / "one", known=parts), few, apart=["driver"])
 
 
-def test_what_another_study_lacks_is_run(tmp_path, ran):
+def test_cases_missing_from_the_known_study_are_run(tmp_path, ran):
     kept = {"outputs": ["rotation"], "output_step": "0.02 s", "duration": "3 s",
             "points": {"top": ("0 m", "2 m")}, "accuracy": "standard"}  # fmt: skip
     heights = ["2 m", "3 m"]
@@ -92,7 +92,7 @@ def test_what_another_study_lacks_is_run(tmp_path, ran):
     assert len(ran) == 20 + 4
 
 
-def test_what_may_be_another_case_is_refused(tmp_path):
+def test_incompatible_known_study_is_refused(tmp_path):
     swept(store=tmp_path / "first")
     known = {"store": tmp_path / "more", "known": tmp_path / "first"}
     with pytest.raises(StudyError, match=r"known: .* differs in arguments \(accuracy"):

@@ -88,7 +88,7 @@ def agrees(lazy, whole):
 
 @pytest.mark.filterwarnings("ignore::rockframe.errors.SolverWarning")
 @pytest.mark.parametrize("run", STUDIES)
-def test_what_is_read_lazily_is_what_is_there(run, tmp_path, dask_is_there, monkeypatch):
+def test_lazily_opened_study_equals_the_stored_one(run, tmp_path, dask_is_there, monkeypatch):
     monkeypatch.setattr(lazy_dataset, "_BLOCK_SIZE", 1)
     counted, counts = [], words._counts
     monkeypatch.setattr(words, "_counts", lambda *a: counted.append(a[0].sizes) or counts(*a))
@@ -119,7 +119,7 @@ def test_what_is_read_lazily_is_what_is_there(run, tmp_path, dask_is_there, monk
 
 
 @pytest.mark.filterwarnings("ignore::rockframe.errors.SolverWarning")
-def test_only_what_is_used_is_read(tmp_path, monkeypatch, dask_is_there):
+def test_only_used_chunks_are_read(tmp_path, monkeypatch, dask_is_there):
     whole = on_a_grid(store=tmp_path / "study")
     lazy_dataset._rows.cache_clear()
     read, plain = [], Store.get
@@ -136,7 +136,7 @@ def test_only_what_is_used_is_read(tmp_path, monkeypatch, dask_is_there):
 
 
 @pytest.mark.filterwarnings("ignore::rockframe.errors.SolverWarning")
-def test_what_is_still_to_come_is_a_gap(tmp_path, dask_is_there):
+def test_missing_chunks_appear_as_gaps(tmp_path, dask_is_there):
     on_a_grid(store=tmp_path / "study")
     (tmp_path / "study" / "chunk-000002.arrays").unlink()
     lazy_dataset._rows.cache_clear()
@@ -151,7 +151,7 @@ def test_what_is_still_to_come_is_a_gap(tmp_path, dask_is_there):
 
 
 @pytest.mark.filterwarnings("ignore::rockframe.errors.SolverWarning")
-def test_damaged_files_are_told_of_when_they_are_read(tmp_path):
+def test_damaged_chunks_raise_when_read(tmp_path):
     on_a_grid(store=tmp_path / "study")
     file = tmp_path / "study" / "chunk-000001.arrays"
     content = bytearray(file.read_bytes())
@@ -199,7 +199,7 @@ def test_with_dask_statistics_stream(tmp_path, monkeypatch):
 
 
 @pytest.mark.filterwarnings("ignore::rockframe.errors.SolverWarning")
-def test_blocks_follow_the_order_of_running(tmp_path):
+def test_lazy_blocks_follow_the_execution_order(tmp_path):
     on_a_grid(store=tmp_path / "study", accuracy="fast", progress=False)
     grid = Store.open(tmp_path / "study").labels().grid
     assert grid.order == ("motion", "scale", "height")
@@ -210,7 +210,7 @@ def test_blocks_follow_the_order_of_running(tmp_path):
     assert (grid.in_dimension_order(np.arange(grid.count)) == numbers).all()
 
 
-def test_what_does_not_fit_is_read_from_its_store(tmp_path, monkeypatch):
+def test_study_larger_than_memory_is_read_from_its_store(tmp_path, monkeypatch):
     scales = np.linspace(0.1, 1, 100)
     whole = rf.sweep(SYSTEM, MOTIONS["weak"], scale=scales, free_vibration="5 s")
     monkeypatch.setattr(memory, "available_memory", lambda: 2e4)
@@ -245,7 +245,7 @@ def test_an_interrupted_study_that_does_not_fit_is_not_read(tmp_path, monkeypatc
     assert runs.status.size == 100
 
 
-def test_what_takes_days_is_told_of_before_it_begins(monkeypatch, tmp_path):
+def test_study_estimated_to_take_days_warns(monkeypatch, tmp_path):
     monkeypatch.setattr(sweep, "_DAY", 1e-5)
     for store, ways in ((None, "no store: with one"), (tmp_path / "study", "jobs on it share")):
         with pytest.warns(SolverWarning, match=rf"8 cases take about .* days with .* {ways}"):

@@ -22,7 +22,7 @@ def runs():
     )  # fmt: skip
 
 
-def test_runs_exceed_where_the_variable_does(runs):
+def test_limit_state_counts_runs_whose_variable_exceeds_it(runs):
     found = rf.fragility(runs, limits=[0.3, ROOF])
     name = "peak point horizontal acceleration top 6 m s^-2"
     assert found.limit_state.values.tolist() == ["rotation 0.3", name, "overturning"]
@@ -37,7 +37,7 @@ def test_runs_exceed_where_the_variable_does(runs):
     assert rotation.median_intensity == found.median_intensity[0]
 
 
-def test_they_stand_in_the_order_in_which_they_are_given(runs):
+def test_limit_states_retain_their_order(runs):
     found = rf.fragility(runs, limits=[ROOF, 0.5, "uplift", 0.2, 0.5])
     name = "peak point horizontal acceleration top 6 m s^-2"
     order = [name, "rotation 0.5", "uplift", "rotation 0.2", "overturning"]
@@ -45,7 +45,7 @@ def test_they_stand_in_the_order_in_which_they_are_given(runs):
 
 
 @pytest.mark.long
-def test_a_dynamic_analysis_narrows_them_too():
+def test_dynamic_analysis_brackets_a_slip_limit_state():
     """A slip of so many metres is exceeded between two runs that tell it."""
     slides = rf.System(BLOCK, rf.RigidGround(friction=0.1))
     found = rf.incremental_dynamic_analysis(
@@ -65,7 +65,7 @@ def test_a_dynamic_analysis_narrows_them_too():
     assert one.limit_state.values.tolist() == ["peak slip 0.01 m"]
 
 
-def test_what_is_missing_is_named(runs):
+def test_invalid_limit_states_are_refused(runs):
     for wrong, kind, match in (
         (("peak_slip", "5 cm"), SchemaError, "the runs have no 'peak_slip"),
         (("peak_slip", "5 kg"), UnitsError, "peak_slip needs a limit in a unit such as m"),
@@ -82,7 +82,7 @@ def test_what_is_missing_is_named(runs):
             rf.fragility(runs, limits=[wrong])
 
 
-def test_cases_without_a_result_exceed_nothing(runs):
+def test_cases_without_a_result_are_omitted(runs):
     lacking = runs.assign(overturned=runs.overturned.astype(float)).copy(deep=True)
     for name in ("peak_relative_rotation", "peak_point_horizontal_acceleration"):
         lacking[name][{"motion": 0}] = np.nan
@@ -122,7 +122,7 @@ def exceeding(runs, limit):
 
 
 @pytest.mark.filterwarnings("ignore::rockframe.errors.ModelWarning")
-def test_settlement_drift_and_acceleration_from_the_sweep_to_the_report(tmp_path):
+def test_settlement_drift_and_acceleration_limits_reach_the_report(tmp_path):
     runs = rf.sweep(ON_SOIL, SUITE, scale=[1.0, 2.0, 4.0, 6.0, 8.0], points=POINTS, **HOW)
     found = rf.fragility(runs, "PGA", limits=LIMITS.values())
     assert found.limit_state.values.tolist() == [*LIMITS, "overturning"]
@@ -171,7 +171,7 @@ def test_a_dynamic_analysis_narrows_limit_states_at_points():
     assert curves.sizes["limit_state"] == 3
 
 
-def test_a_block_that_comes_back_from_beyond_the_angle_exceeds_what_it_reached():
+def test_block_returning_from_beyond_overturning_exceeds_reached_limits():
     """It has not overturned; but peaks that are told up to the angle say nothing of the rest."""
     walled = rf.System(BLOCK, rf.RearWall(side="left", restitution=-0.3))
     pulse = rf.GroundMotion.sine_pulse("-6 m/s^2", "1 Hz")
@@ -196,7 +196,7 @@ def test_a_block_that_comes_back_from_beyond_the_angle_exceeds_what_it_reached()
         assert (demands(found, state).item() >= least) == bool(exceeded)
 
 
-def test_responses_that_were_put_into_another_unit_are_read_in_it():
+def test_converted_responses_are_read_in_their_unit():
     """Such as for a figure: limit states, levels and measures go by the unit that they have."""
     motions = {f"seed {k}": rf.GroundMotion.stochastic(6.8, "8 km", seed=k) for k in range(4)}
     block = rf.Block(width="0.6 m", height="2 m", mass="400 kg")
@@ -221,7 +221,7 @@ def test_responses_that_were_put_into_another_unit_are_read_in_it():
 
 
 @pytest.mark.long
-def test_capacities_go_by_scales_in_another_unit():
+def test_converted_scales_give_the_same_capacities():
     """Those of a dynamic analysis are multiples of the motion, whatever its scales are in."""
     motions = {f"seed {k}": rf.GroundMotion.stochastic(6.8, "8 km", seed=k) for k in range(4)}
     block = rf.Block(width="0.6 m", height="2 m", mass="400 kg")
@@ -246,7 +246,7 @@ def test_capacities_go_by_scales_in_another_unit():
         (rf.ensemble_statistics, {"name": "motion"}, "'motion' has no numbers"),
     ],
 )
-def test_words_and_lists_in_the_place_of_a_scalar_are_refused(analysis, options, words) -> None:
+def test_non_scalar_names_of_variables_are_refused(analysis, options, words) -> None:
     motions = [rf.GroundMotion.sine_pulse(f"{a} m/s^2", "1 Hz") for a in (3, 4, 5, 6)]
     system = rf.System(rf.Block(width="0.5 m", height="2 m", mass="400 kg"))
     runs = rf.sweep(system, motions, scale=[1.0], duration="1 s", progress=False)

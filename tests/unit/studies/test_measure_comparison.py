@@ -69,7 +69,7 @@ def test_measures_are_compared_as_regressions_are(runs):
     )
 
 
-def test_relative_sufficiency_is_the_mean_of_log_likelihoods(runs):
+def test_relative_sufficiency_is_mean_log_likelihood_difference(runs):
     found = rf.compare_intensities(runs, ["poor", "good"])
     fell = runs.status.values.ravel() == RunStatus.OVERTURNED
     response = np.log(runs.peak_relative_rotation.values.ravel())
@@ -90,7 +90,7 @@ def test_relative_sufficiency_is_the_mean_of_log_likelihoods(runs):
     assert more.mean() > 0.5
 
 
-def test_chances_are_uniform_where_nothing_depends():
+def test_sufficiency_p_values_are_uniform_under_independence():
     rng = np.random.default_rng(3)
     chances = []
     for _ in range(400):
@@ -100,7 +100,7 @@ def test_chances_are_uniform_where_nothing_depends():
     assert stats.kstest(chances, "uniform").pvalue > 0.01
 
 
-def test_covariates_come_in_several_forms(runs):
+def test_covariates_are_accepted_in_several_forms(runs):
     values = runs.magnitude.values
     names = runs.motion.values.tolist()
     forms = [
@@ -116,7 +116,7 @@ def test_covariates_come_in_several_forms(runs):
     ).all()
 
 
-def test_spectral_measures_are_told_apart_by_their_periods(runs):
+def test_spectral_measures_are_labelled_with_their_periods(runs):
     several = [("SA", "0.5 s"), ("SA", "1 s"), ("Sa_avg", (np.array([0.5, 1.0]), "s")), "PGA"]
     found = rf.compare_intensities(runs, several)
     assert found.measure.values.tolist() == [
@@ -142,7 +142,7 @@ def test_spectral_measures_are_told_apart_by_their_periods(runs):
         ({"measures": ["good"], "against": {"depth": {"m00": 1}}}, "no depth of the motion 'm01'"),
     ],
 )
-def test_what_cannot_be_is_refused(runs, options, words):
+def test_invalid_comparison_arguments_are_refused(runs, options, words):
     with pytest.raises(ComponentError, match=words):
         rf.compare_intensities(runs, **options)
 

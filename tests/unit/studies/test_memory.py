@@ -33,20 +33,20 @@ MANY = 30_000
         ),
     ],
 )  # fmt: skip
-def test_what_cannot_fit_is_refused_before_it_begins(study, monkeypatch):
+def test_study_larger_than_memory_is_refused_before_running(study, monkeypatch):
     monkeypatch.setattr(memory, "available_memory", lambda: 2e6)
     with pytest.raises(StudyError, match=r"cases need about .* [GM]B of memory .*; 2 MB are ava"):
         study()
 
 
-def test_what_needs_most_of_it_is_told_of(monkeypatch):
+def test_study_using_most_of_memory_warns(monkeypatch):
     monkeypatch.setattr(memory, "available_memory", lambda: 7e4)
     with pytest.warns(SolverWarning, match=r"sweep: 100 cases need about 0.058 MB of memory"):
         runs = rf.sweep(SYSTEM, PULSE, scale=np.linspace(0.1, 1, 100), free_vibration="5 s")
     assert runs.overturned.notnull().all()
 
 
-def test_what_is_told_is_what_is_taken(monkeypatch):
+def test_estimated_memory_matches_measured_memory(monkeypatch):
     motions = [PULSE, PULSE.scaled(1.1)]
     sizes = []  # of scalars, of histories, of both, and what there is
     monkeypatch.setattr(memory, "available_memory", lambda: 1e12)
@@ -68,7 +68,7 @@ def test_what_is_told_is_what_is_taken(monkeypatch):
     assert sizes[2] > 1.5e7
 
 
-def test_the_least_of_all_limits_counts(monkeypatch, tmp_path):
+def test_available_memory_is_the_smallest_limit(monkeypatch, tmp_path):
     machine, most, now, parts = (tmp_path / name for name in ("meminfo", "max", "current", "stat"))
     monkeypatch.setattr(memory, "_MEMINFO", machine)
     monkeypatch.setattr(memory, "_CGROUP_FILES", ((most, now, parts),))

@@ -13,7 +13,7 @@ SYSTEM = rf.System(rf.Block(width="0.4 m", height="2 m", mass="300 kg"))
 HOW = {"scale": [4.0, 6.0], "free_vibration": "1 s"}
 
 
-def test_a_pair_is_its_two_components():
+def test_pair_is_run_as_its_two_components():
     runs = rf.sweep(SYSTEM, PAIR, **HOW)
     apart = rf.sweep(SYSTEM, [NORTH, EAST], **HOW)
     assert runs.motion.values.tolist() == apart.motion.values.tolist()
@@ -22,7 +22,7 @@ def test_a_pair_is_its_two_components():
     assert rf.fragility(runs, "PGA", limits=[0.1]).trial_count.values.tolist() == [4, 4]
 
 
-def test_pairs_among_other_motions_are_named():
+def test_components_of_a_pair_are_labelled():
     runs = rf.sweep(SYSTEM, {"station": PAIR, "pulse": rf.GroundMotion.sine_pulse()}, **HOW)
     assert runs.motion.values.tolist() == ["station first", "station second", "pulse"]
     told = rf.HorizontalPair(
@@ -37,13 +37,13 @@ def test_pairs_among_other_motions_are_named():
     assert found.sizes["motion"] == 2
 
 
-def test_the_vertical_component_goes_with_both():
+def test_vertical_component_accompanies_both_directions():
     pair = rf.HorizontalPair(NORTH, EAST, NORTH.scaled(0.3))
     runs = rf.sweep(SYSTEM, pair, **HOW)
     alone = SYSTEM.simulate(EAST.with_vertical(NORTH.scaled(0.3)).scaled(6.0), free_vibration="1 s")
     assert runs.peak_rotation.values[1, 1] == alone.peak_rotation.item()
 
 
-def test_one_run_needs_one_direction():
+def test_simulate_refuses_a_pair():
     with pytest.raises(AssemblyError, match=r"pair\.rotated\('30 deg'\)"):
         SYSTEM.simulate(PAIR)

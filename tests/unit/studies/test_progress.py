@@ -79,7 +79,7 @@ def test_one_bar_counts_all_rounds(name, bars, monkeypatch):
     assert bar.desc == name
 
 
-def test_what_a_store_has_is_there_from_the_beginning(bars, tmp_path):
+def test_stored_cases_count_as_initial_progress(bars, tmp_path):
     analysis = ANALYSES["incremental_dynamic_analysis"]
     first = analysis(progress=True, store=tmp_path)
     again = analysis(progress=True, store=tmp_path)
@@ -89,7 +89,7 @@ def test_what_a_store_has_is_there_from_the_beginning(bars, tmp_path):
     assert again.identical(first)
 
 
-def test_the_scales_of_one_motion_are_counted_too(bars):
+def test_bar_counts_scales_of_critical_scale(bars):
     found = rf.critical_scale(SYSTEM, PULSE, largest=8.0, scales=20, progress=True, **FAST)
     (bar,) = bars
     assert bar.n == bar.total == found.sizes["scale"] > 20
@@ -99,7 +99,7 @@ def test_the_scales_of_one_motion_are_counted_too(bars):
     assert bar.totals[20:] == list(range(21, bar.total + 1))
 
 
-def test_where_nobody_looks_there_is_none(bars, capsys):
+def test_no_bar_is_shown_without_a_terminal(bars, capsys):
     rf.critical_scale(SYSTEM, PULSE, largest=8.0, scales=5, **FAST)
     ANALYSES["overturning_map"]()
     ANALYSES["overturning_map"](progress=False)
@@ -116,7 +116,7 @@ def test_a_bar_is_closed_when_something_fails(bars):
     assert bars[0].disable  # as tqdm leaves a bar that is closed
 
 
-def test_in_a_notebook_the_widget_grows_too(monkeypatch):
+def test_notebook_widget_total_grows(monkeypatch):
     widget = types.SimpleNamespace(max=2)
 
     class Notebook:
@@ -138,7 +138,7 @@ def test_in_a_notebook_the_widget_grows_too(monkeypatch):
     assert bar._bar.n == bar._bar.initial == 1
 
 
-def test_what_is_no_truth_value_is_refused(monkeypatch):
+def test_invalid_progress_option_is_refused(monkeypatch):
     with pytest.raises(ComponentError, match="critical_scale: progress must be True, False or"):
         rf.critical_scale(SYSTEM, PULSE, progress=1.0)
     with pytest.raises(ComponentError, match="overturning_map: progress must be"):

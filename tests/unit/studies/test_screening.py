@@ -47,7 +47,7 @@ FALLS = Look(
 )
 
 
-def test_a_verdict_is_sure_where_it_is_clear_of_three_times_its_error():
+def test_verdict_is_sure_beyond_three_times_its_error():
     # a body that stands clears the overturning angle by 0.4, or by less in the finer run
     for share, sure in ((0.6, True), (0.67, True), (0.71, False), (0.52, True), (0.46, False)):
         assert is_sure(STANDS, replace(STANDS, share=share)) is sure
@@ -73,7 +73,7 @@ def test_a_verdict_is_sure_where_it_is_clear_of_three_times_its_error():
         assert is_sure(first, second)
 
 
-def test_cases_near_a_flip_are_those_of_standard_and_all_others_those_of_fast(runs):
+def test_screening_repeats_only_cases_near_a_flip_at_standard(runs):
     fast, screen, standard = (runs[level] for level in ("fast", "screen", "standard"))
     repeated = screen.repeated.astype(bool)
     assert 0 < int(repeated.sum()) < 0.1 * repeated.size
@@ -92,7 +92,7 @@ def test_cases_near_a_flip_are_those_of_standard_and_all_others_those_of_fast(ru
     assert screen.attrs["accuracy"] == "screen"
 
 
-def test_a_case_runs_alone_as_it_ran_in_the_sweep(runs):
+def test_screened_case_is_reproduced_alone(runs):
     screen = runs["screen"]
     for again in (True, False):
         place = np.argwhere(screen.repeated.to_numpy() == again)[0]
@@ -102,7 +102,7 @@ def test_a_case_runs_alone_as_it_ran_in_the_sweep(runs):
         assert float(alone.peak_rotation) == float(screen.peak_rotation[tuple(place)])
 
 
-def test_chunks_stores_and_lanes_change_nothing(runs, tmp_path, monkeypatch):
+def test_screening_does_not_depend_on_chunks_stores_or_lanes(runs, tmp_path, monkeypatch):
     monkeypatch.setattr(study, "COMPILING_SHARE", np.inf)
     cases = {**AXES, "scale": np.linspace(0.4, 1.1, 128).tolist()}
     lanes = rf.sweep(SYSTEM, shaking(), **cases, accuracy="screen")
@@ -114,7 +114,7 @@ def test_chunks_stores_and_lanes_change_nothing(runs, tmp_path, monkeypatch):
         xr.testing.assert_identical(one.drop_attrs(deep=False), other.drop_attrs(deep=False))
 
 
-def test_histories_of_repeated_cases_are_those_of_standard(runs):
+def test_repeated_cases_have_standard_histories(runs):
     repeated = runs["screen"].repeated.astype(bool)
     few = {**AXES, "scale": runs["screen"].scale[repeated.any(["frequency_ratio", "motion"])][:2]}
     few["scale"] = few["scale"].to_numpy().tolist()
@@ -152,7 +152,7 @@ def on_rigid_ground():
 
 
 @pytest.mark.parametrize("name", on_rigid_ground())
-def test_on_rigid_ground_all_run_at_standard_and_it_says_so(name, tmp_path):
+def test_screening_on_rigid_ground_runs_all_cases_at_standard(name, tmp_path):
     system = on_rigid_ground()[name]
     asked = {"scale": np.linspace(0.3, 1.5, 24).tolist(), "gravity": ["9.81 m/s^2", "9.8 m/s^2"]}
     plain = rf.sweep(system, shaking(), **asked)
@@ -172,7 +172,7 @@ def test_on_rigid_ground_all_run_at_standard_and_it_says_so(name, tmp_path):
     assert alone.peak_rotation.item() == plain.peak_rotation.isel(scale=9, gravity=1).item()
 
 
-def test_screened_studies_without_a_result_have_gaps_on_rigid_ground_too():
+def test_failed_cases_have_screening_gaps_on_rigid_ground():
     system = on_rigid_ground()["held"]
     runs = rf.sweep(system, shaking(60), height=(np.array([-1.0, 2.0]), "m"), accuracy="screen")
     assert runs.repeated.isnull().squeeze().to_numpy().tolist() == [True, False]

@@ -73,7 +73,7 @@ def stacked() -> rf.System:
 
 
 @pytest.mark.parametrize("scene", [frame, pytest.param(stacked, marks=pytest.mark.long)])
-def test_what_is_broken_at_the_end_are_the_breaks_of_a_run(scene):
+def test_broken_restrainer_count_equals_break_events(scene):
     motion = rf.GroundMotion.type_a_pulse("1.2 m/s", "1.6 s") if scene is frame else PULSE
     scales = [0.3, 1.3333]  # PULSE is then one of 4 m/s^2
     asked = {"accuracy": "fast", "overturning": "continue", "free_vibration": "0.1 s"}
@@ -92,7 +92,7 @@ def test_a_broken_tie_is_a_limit_state(broken):
     )
 
 
-def test_restrainers_and_bodies_have_their_labels(tmp_path):
+def test_restrainers_are_labelled_by_name(tmp_path):
     runs = rf.sweep(TIED, PULSE, scale=[0.3, 1.0], outputs=[], **FOUR)
     assert runs.restrainer.values.tolist() == ["west", "east"]
     limit = ("peak_restrainer_force", "2 kN", "east")
@@ -108,7 +108,7 @@ def test_restrainers_and_bodies_have_their_labels(tmp_path):
         assert kept.restrainer.values.tolist() == ["only"]
 
 
-def test_a_function_tells_the_names_of_restrainers_where_all_are_alike():
+def test_restrainer_names_of_a_function_are_used_if_all_cases_agree():
     def alike(strength: float) -> rf.System:
         return rf.System(STATUE, PADS, tie("upper", -1, f"{strength} kN"))
 
@@ -121,7 +121,7 @@ def test_a_function_tells_the_names_of_restrainers_where_all_are_alike():
 
 
 @pytest.mark.wide
-def test_a_case_whose_restrainers_are_not_those_of_the_labels_says_so():
+def test_case_with_other_restrainer_names_warns():
     def scene(number: int) -> rf.System:  # of so many it is not looked at all beforehand
         names = ("east", "west") if number == 5 else ("west", "east")
         return rf.System(STATUE, PADS, *(tie(name, -1) for name in names))
@@ -136,7 +136,7 @@ def test_a_case_whose_restrainers_are_not_those_of_the_labels_says_so():
 @pytest.mark.parametrize(
     "outputs", [None, *(pytest.param(one, marks=pytest.mark.long) for one in ([], ["energy"]))]
 )
-def test_unlike_numbers_of_bodies_stand_side_by_side(tmp_path, outputs):
+def test_sweep_pads_cases_with_fewer_bodies(tmp_path, outputs):
     asked = {"drums": [3, 2, 4], "scale": [0.5, 1.0], "outputs": outputs, **FOUR}
     runs = rf.sweep(column, PULSE, chunk=1, store=tmp_path / "kept", **asked)
     assert runs.body.values.tolist() == [1, 2, 3, 4]
@@ -160,7 +160,7 @@ def test_slips_of_a_body_are_a_limit_state():
     assert int(found.stripe_exceedances.isel(limit_state=0).sum()) == most > 0
 
 
-def test_what_is_missing_is_told_with_its_remedy():
+def test_missing_variables_raise_with_a_remedy():
     runs = rf.sweep(rf.System(STATUE, PADS), PULSE, scale=[0.3, 1.0], **FOUR)
     for wrong, kind, match in (
         (("peak_settlement", "1 cm"), SchemaError, r"a sweep has it with points=\{...\}"),

@@ -84,7 +84,7 @@ def assert_same_bits(lanes, alone):
     ],
     ids=lambda given: "-".join(str(one).split("(")[0] for one in given) or "none",
 )
-def test_lanes_give_what_single_runs_give(monkeypatch, parts, options):
+def test_lanes_reproduce_single_runs(monkeypatch, parts, options):
     check_scene(monkeypatch, "fast", parts, options)
 
 
@@ -101,11 +101,11 @@ def test_lanes_give_what_single_runs_give(monkeypatch, parts, options):
     ids=lambda given: "-".join(str(one).split("(")[0] for one in given) or "none",
 )
 @pytest.mark.parametrize("rtol", [1e-4, 2e-8])
-def test_lanes_step_by_tolerance_as_single_runs_do(monkeypatch, parts, options, rtol):
+def test_adaptive_lanes_reproduce_single_runs(monkeypatch, parts, options, rtol):
     check_scene(monkeypatch, rf.Accuracy(rtol=rtol), parts, options)
 
 
-def test_lanes_give_up_as_single_runs_do(monkeypatch):
+def test_lanes_reach_step_limit_like_single_runs(monkeypatch):
     system = rf.System(BLOCK, PADS)
     few = rf.Accuracy(rtol=1e-6, max_steps=700)
     lanes, alone = both(monkeypatch, system, MOTIONS[:3], accuracy=few, scale=[0.2, 0.9, 1.6])
@@ -135,7 +135,7 @@ def test_lanes_leave_peaks_inside_polynomials_to_the_driver(monkeypatch):
 
 
 @pytest.mark.parametrize("course", ["stop", "continue"])
-def test_lanes_go_on_after_overturning(monkeypatch, course):
+def test_lanes_continue_or_stop_after_overturning(monkeypatch, course):
     system = rf.System(BLOCK, PADS, gravity="9.81 m/s^2")
     lanes, alone = both(
         monkeypatch, system, MOTIONS[:2], scale=np.linspace(0.2, 3.0, 7), damping_ratio=[0.0, 0.3],
@@ -145,7 +145,7 @@ def test_lanes_go_on_after_overturning(monkeypatch, course):
     assert (alone.status == (1 if course == "stop" else 2)).any()
 
 
-def test_cases_that_fail_are_refused_with_their_reason(monkeypatch):
+def test_failing_cases_have_the_same_reason_in_lanes(monkeypatch):
     system = rf.System(rf.Block(width="1.2 m", height="6 m", mass="20 t"), PADS)
     lanes, alone = both(
         monkeypatch, system, MOTIONS[:1], height=["0.5 m", "1.5 m", "6 m"], damping_ratio=[0.1, 50]
@@ -155,7 +155,7 @@ def test_cases_that_fail_are_refused_with_their_reason(monkeypatch):
     assert (alone.status == 0).any()
 
 
-def test_still_ground_and_inclined_bases(monkeypatch):
+def test_lanes_handle_still_ground_and_inclined_bases(monkeypatch):
     lean = rf.InitialState(rotation="0.05 rad")
     lanes, alone = both(
         monkeypatch, rf.System(BLOCK, PADS), initial=lean, duration="2 s", width=["0.7 m", "0.8 m"]
@@ -171,7 +171,7 @@ def test_still_ground_and_inclined_bases(monkeypatch):
 @pytest.mark.parametrize(
     "chunk", [7, *(pytest.param(size, marks=pytest.mark.long) for size in (1, 1000))]
 )
-def test_neighbours_chunks_and_executors_change_nothing(monkeypatch, chunk):
+def test_lanes_do_not_depend_on_neighbours_chunks_or_executors(monkeypatch, chunk):
     monkeypatch.setattr(study, "MIN_CASES_IN_LANES", 1)
     monkeypatch.setattr(study, "COMPILING_SHARE", math.inf)
     system = rf.System(BLOCK, PADS)
@@ -200,7 +200,7 @@ def test_neighbours_chunks_and_executors_change_nothing(monkeypatch, chunk):
     ],
     ids=["friction on pads", "stack"],
 )
-def test_equations_that_work_in_lists_are_not_prepared_for_lanes(parts, accuracy):
+def test_list_based_equations_are_not_prepared_for_lanes(parts, accuracy):
     """Lanes for them cannot be compiled: an attempt takes some seconds, and is told of."""
     planned = plan_study(rf.System(*parts), MOTIONS[0], {"scale": [1.0]}, None, accuracy=accuracy)
     case = in_lanes.CasesOfJob(planned.job(range(1)))
@@ -235,7 +235,7 @@ def test_a_law_that_cannot_be_compiled_runs_in_plain_python(monkeypatch, fallbac
     np.testing.assert_allclose(plain.peak_rotation, runs.peak_rotation, rtol=1e-9)
 
 
-def test_a_critical_scale_of_a_law_that_cannot_be_compiled(fallbacks):
+def test_critical_scale_works_for_an_uncompilable_law(fallbacks):
     rf.register(TabulatedPads)
     pulse = rf.GroundMotion.sine_pulse("-6 m/s^2", "2 Hz")
     found, elastic = (
@@ -276,7 +276,7 @@ def test_chunks_of_a_law_that_cannot_be_compiled_are_small(monkeypatch, fallback
     assert chunk_size(long, 1, as_python=True) < 0.1 * chunk_size(long, 1, as_python=False)
 
 
-def test_what_fails_in_preparing_lanes_is_told_as_an_error(monkeypatch):
+def test_failure_in_preparing_lanes_warns_and_falls_back(monkeypatch):
     system = rf.System(BLOCK, PADS)
     axes = {"scale": np.linspace(0.2, 1.0, 3), "damping_ratio": [0.05, 0.2]}
 
@@ -313,7 +313,7 @@ def test_what_fails_in_preparing_lanes_is_told_as_an_error(monkeypatch):
     assert not any("error in rockframe" in text for text in runs.message.values.ravel())
 
 
-def test_lanes_are_compiled_where_they_save_more_than_that_takes(monkeypatch):
+def test_lanes_are_compiled_only_if_they_save_time(monkeypatch):
     system, asked = rf.System(BLOCK, PADS), []
     shaking = rf.GroundMotion.from_arrays((np.ones(1501), "m/s^2"), "0.02 s")
 

@@ -106,7 +106,7 @@ ANALYSES = {
 """By the names of functions that have a store."""
 
 
-def test_every_analysis_that_has_a_store_is_here():
+def test_every_analysis_with_a_store_is_tested():
     public = {name: getattr(rf, name) for name in rf.__all__}
     functions = {name: one for name, one in public.items() if inspect.isfunction(one)}
     having = {
@@ -120,7 +120,7 @@ def test_every_analysis_that_has_a_store_is_here():
     "run", [pytest.param(run, id=f"{name} {k}") for name, several in ANALYSES.items()
             for k, run in enumerate(several)],
 )  # fmt: skip
-def test_a_store_holds_what_memory_holds(run, tmp_path):
+def test_stored_study_equals_study_in_memory(run, tmp_path):
     plain = run(accuracy="fast", progress=False)
     for _ in range(2):  # run, then read
         alike(run(accuracy="fast", progress=False, store=tmp_path / "study"), plain)
@@ -130,7 +130,7 @@ def test_a_store_holds_what_memory_holds(run, tmp_path):
 
 
 @pytest.mark.parametrize("run", ANALYSES["sweep"])
-def test_an_opened_study_and_its_cases_are_those_of_memory(run, tmp_path, monkeypatch):
+def test_reopened_study_and_its_cases_equal_those_in_memory(run, tmp_path, monkeypatch):
     plain = run(accuracy="fast")
     run(accuracy="fast", store=tmp_path / "study")
     alike(rf.open_study(tmp_path / "study"), plain)
@@ -146,7 +146,7 @@ def test_an_opened_study_and_its_cases_are_those_of_memory(run, tmp_path, monkey
 
 
 @pytest.mark.long
-def test_another_process_finds_motions_by_their_names(tmp_path):
+def test_cases_are_found_by_motion_name_in_another_process(tmp_path):
     plain = swept(store=tmp_path / "study")
     told = subprocess.run(
         [sys.executable, "-W", "ignore", "-c",
@@ -164,14 +164,14 @@ def test_another_process_finds_motions_by_their_names(tmp_path):
     assert json.loads(told.stdout) == expected
 
 
-def test_motions_in_another_order_are_another_study(tmp_path):
+def test_reordered_motions_are_refused_by_the_store(tmp_path):
     swept(store=tmp_path / "study")
     turned = dict(reversed(MOTIONS.items()))
     with pytest.raises(StudyError, match=r"differs in motions \(in their order\)"):
         rf.sweep(SYSTEM, turned, scale=[1.0, 1.5], store=tmp_path / "study")
 
 
-def test_stores_that_do_not_know_the_order_of_motions_are_refused(tmp_path):
+def test_old_store_formats_are_refused(tmp_path):
     swept(store=tmp_path / "study")
     head = tmp_path / "study" / "study.json"
     kept = head.read_text()
@@ -183,7 +183,7 @@ def test_stores_that_do_not_know_the_order_of_motions_are_refused(tmp_path):
                 read(tmp_path / "study")
 
 
-def test_mappings_come_back_in_their_order(tmp_path):
+def test_stored_mappings_retain_their_order(tmp_path):
     described = {"b": 1, "a": {"z": 1, "c": [2, {"y": 1, "d": 2}]}}
     write_arrays(tmp_path / "one", described, {"b": np.zeros(1), "a": np.ones(2)})
     again, arrays = read_arrays(tmp_path / "one")
@@ -191,7 +191,7 @@ def test_mappings_come_back_in_their_order(tmp_path):
     assert list(arrays) == ["b", "a"]
 
 
-def test_names_that_are_numbers_stand_for_themselves():
+def test_numeric_motion_names_are_unambiguous():
     one, other = MOTIONS["weak"], MOTIONS["strong"]
     with pytest.raises(StudyError, match="two entries are called '1'"):
         rf.sweep(SYSTEM, {1: one, "1": other}, scale=[1.0])

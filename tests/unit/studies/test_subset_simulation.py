@@ -34,7 +34,7 @@ def found():
     return simulated(cases=300, seed=5, motions=MOTIONS, correlation={("width", "scale"): 0.3})
 
 
-def test_its_numbers_are_labelled_and_told(found, tmp_path):
+def test_subset_simulation_dataset_is_labelled_and_described(found, tmp_path):
     for name, one in found.variables.items():
         assert one.attrs.get("long_name"), name
         if name in SCHEMA and SCHEMA[name].unit is not None:
@@ -53,7 +53,7 @@ def test_its_numbers_are_labelled_and_told(found, tmp_path):
     assert found.left_out_count.item() == 0
 
 
-def test_levels_and_samples_hang_together(found):
+def test_levels_and_samples_are_consistent(found):
     product = float(found.conditional_probability.prod())
     assert found.exceedance_probability.item() == pytest.approx(product, rel=1e-12)
     assert (np.diff(found.demand_threshold) > 0.0).all()
@@ -75,14 +75,14 @@ def test_levels_and_samples_hang_together(found):
     assert found.run_count.item() == counts.sum() - begun
 
 
-def test_samples_are_runs_that_can_be_made_again(found):
+def test_samples_can_be_reproduced_as_runs(found):
     for case in (0, found.sizes["case"] // 2, found.sizes["case"] - 1):
         alone = rf.case(found, case=case).simulate(outputs=None)
         assert alone.peak_rotation.item() == found.peak_rotation[case].item()
 
 
 @pytest.mark.long
-def test_a_seed_makes_the_same_again(found):
+def test_same_seed_reproduces_the_result(found):
     asked = {"cases": 300, "motions": MOTIONS, "correlation": {("width", "scale"): 0.3}}
     alike(simulated(seed=5, chunk=17, **asked), found)
     other = simulated(seed=8, **asked)
@@ -97,7 +97,7 @@ def test_a_seed_makes_the_same_again(found):
         (("peak_relative_rotation", 0.1), 0.8),
     ],
 )
-def test_probabilities_are_those_of_brute_force(limit, scale):
+def test_probabilities_match_monte_carlo(limit, scale):
     asked = {
         "motions": MOTIONS,
         "spread": {**SPREAD, "scale": ("lognormal", scale, 0.15)},
@@ -122,7 +122,7 @@ def test_probabilities_are_those_of_brute_force(limit, scale):
     assert low - error < np.mean(every) < high + error
 
 
-def test_demands_exceed_where_limit_states_do():
+def test_demand_of_one_corresponds_to_exceedance():
     runs = rf.sweep(
         SYSTEM, MOTIONS, scale=np.linspace(0.6, 4.0, 40), points={"top": ("0 m", "2 m")}, **FAST
     )
@@ -157,7 +157,7 @@ def test_a_limit_state_at_a_point():
 
 
 @pytest.mark.long
-def test_blocks_at_rest_stay_together():
+def test_samples_at_rest_share_one_level():
     """Most of the samples do not move: the share of the first level is that of those that do."""
     weak = rf.GroundMotion.sine_pulse("1.9 m/s^2", "1.2 Hz")
     spread = {"width": ("normal", "0.5 m", "2 cm"), "scale": ("lognormal", 0.8, 0.22)}
@@ -169,7 +169,7 @@ def test_blocks_at_rest_stay_together():
     assert found.chain_count[1].item() == int(moved.sum())
 
 
-def test_a_sample_that_never_moves_has_a_bound_from_above_alone():
+def test_samples_that_never_move_have_only_an_upper_bound():
     still = rf.GroundMotion.sine_pulse("0.5 m/s^2", "1 Hz")
     with pytest.warns(ModelWarning, match="all samples of the last demand 0, so that none leads"):
         found = simulated(motions=still, cases=100)
@@ -180,7 +180,7 @@ def test_a_sample_that_never_moves_has_a_bound_from_above_alone():
     assert found.verdict.startswith("Overturns with a probability below 3.62e-02 with confidence")
 
 
-def test_too_few_levels_have_a_bound_from_above_alone():
+def test_too_few_levels_give_only_an_upper_bound():
     with pytest.warns(ModelWarning, match=r"after 2 levels: the greatest demand is 0\.\d+; allow"):
         found = simulated(cases=60, levels=2, spread={"scale": ("lognormal", 0.9, 0.03)})
     assert found.exceedance_probability.item() == 0.0
@@ -198,7 +198,7 @@ def steps(values):
 
 
 @pytest.mark.parametrize("values", [1.0, 2.0, 10.0])
-def test_a_demand_of_steps_has_its_probability(values):
+def test_stepwise_demand_has_the_exact_probability(values):
     levels = steps(values)
     assert subset_probability(levels) == pytest.approx(
         stats.norm.sf(3.0), rel=4 * subset_variation(levels)
@@ -242,7 +242,7 @@ def test_cases_that_cannot_be_assembled_are_counted():
 
 
 @pytest.mark.wide
-def test_an_interrupted_simulation_says_so_and_goes_on(tmp_path, monkeypatch):
+def test_interrupted_subset_simulation_warns_and_resumes(tmp_path, monkeypatch):
     whole = simulated(cases=200)
     run = lines.run_study
     left = [14]
@@ -289,12 +289,12 @@ def test_an_interrupted_simulation_says_so_and_goes_on(tmp_path, monkeypatch):
         ({"correlation": {("width", "height"): 0.2}}, "correlation needs pairs of two of width, s"),
     ],
 )
-def test_what_is_no_such_thing_is_refused(asked, words):
+def test_invalid_subset_simulation_arguments_are_refused(asked, words):
     with pytest.raises(ComponentError, match=words):
         simulated(**asked)
 
 
-def test_variables_that_runs_do_not_have_are_named():
+def test_missing_limit_variables_are_named():
     with pytest.raises(rf.errors.SchemaError, match="have no 'peak_point_horizontal_acceleration"):
         simulated(limit=("peak_point_horizontal_acceleration", "1 m/s^2"), cases=50)
     with pytest.raises(ComponentError, match=r"was 'peak_slip' or .* meant"):

@@ -97,13 +97,13 @@ POOLS = {
     ],
 )
 @pytest.mark.filterwarnings("ignore::rockframe.errors.SolverWarning")
-def test_what_a_case_gives_depends_on_nothing_else(plain, who):
+def test_cases_do_not_depend_on_chunks_or_executor(plain, who):
     with POOLS[who]() as pool:
         for chunk in (7, 1000) if who == "two processes" else (1, 7, 1000):
             assert same(the_same_sweep(chunk=chunk, executor=pool), plain)
 
 
-def test_cases_without_a_result_are_gaps_with_a_reason(plain):
+def test_failed_cases_are_gaps_with_a_message(plain):
     squat = plain.sel(height=0.3)
     assert (squat.status == RunStatus.REFUSED).all()
     told = plain.message
@@ -121,7 +121,7 @@ def test_cases_without_a_result_are_gaps_with_a_reason(plain):
         rf.case(plain, scale=1.0, frequency_ratio=10, height=0.3, motion="pulse")
 
 
-def test_histories_stand_on_common_times(plain):
+def test_histories_share_a_time_axis(plain):
     assert plain.rotation.dims == (*plain.status.dims, "time")
     assert "angular_velocity" not in plain
     np.testing.assert_array_equal(plain.time, np.arange(plain.time.size) * 0.05)
@@ -142,7 +142,7 @@ def test_histories_stand_on_common_times(plain):
                 )
 
 
-def test_a_run_that_ends_between_two_times_has_no_time_of_its_own():
+def test_run_ending_between_samples_adds_no_time():
     runs = rf.sweep(
         SYSTEM, PULSE, scale=[3.0], outputs=(), output_step="0.1 s", free_vibration="3 s"
     )
@@ -156,7 +156,7 @@ def test_a_run_that_ends_between_two_times_has_no_time_of_its_own():
     assert runs.peak_base_shear.item() == alone.peak_base_shear.item()
 
 
-def test_runs_that_cannot_be_finished_have_their_status():
+def test_unfinished_runs_have_a_status():
     few = rf.Accuracy(rtol=1e-6, max_steps=450)
     with pytest.warns(SolverWarning, match=r"1 of 2 cases have no result.*limit of steps") as said:
         runs = rf.sweep(SYSTEM, PULSE, scale=[0.5, 1.2], accuracy=few, duration="3 s")
@@ -168,13 +168,13 @@ def test_runs_that_cannot_be_finished_have_their_status():
     assert "limit of steps" in broken.message.item()
 
 
-def test_statuses_are_those_of_runs_and_two_more():
+def test_sweep_statuses_extend_run_statuses():
     own = {one.name: int(one) for one in RunStatus}
     assert {one.name: int(one) for one in Status}.items() <= own.items()
     assert set(own) - {one.name for one in Status} == {"REFUSED", "NOT_RUN"}
 
 
-def test_what_a_run_warns_of_is_kept_and_summed_up():
+def test_warnings_of_runs_are_stored_and_summarized():
     lifting = PULSE.with_vertical(PULSE.scaled(6.0))
     system = rf.System(BLOCK)
     with pytest.warns(ModelWarning, match="1 of 2 cases have a result to be careful with") as said:
@@ -189,7 +189,7 @@ def test_what_a_run_warns_of_is_kept_and_summed_up():
 @pytest.mark.parametrize(
     "scene", [SYSTEM, lambda frequency_ratio: on_pads(frequency_ratio, "3.6 m")]
 )
-def test_what_a_scene_warns_of_is_kept_too(scene):
+def test_warnings_of_scenes_are_stored(scene):
     with pytest.warns(ModelWarning, match="1 of 2 cases have a result to be careful with") as said:
         runs = rf.sweep(scene, PULSE, frequency_ratio=[5, 20], **FAST)
     assert len(said) == 1
@@ -197,7 +197,7 @@ def test_what_a_scene_warns_of_is_kept_too(scene):
     assert runs.message.values[1, 0] == "none"
 
 
-def test_whatever_a_function_raises_is_its_case_s_alone():
+def test_exception_in_scene_function_fails_only_its_case():
     def scene(width):
         if width.m_as("m") > 1.0:
             1 / 0  # noqa: B018
@@ -213,7 +213,7 @@ def test_whatever_a_function_raises_is_its_case_s_alone():
 
 @pytest.mark.wide
 @pytest.mark.skipif(not COMPILED, reason="plain Python holds the interpreter")
-def test_machine_code_leaves_the_interpreter_to_other_threads():
+def test_compiled_integration_releases_the_gil():
     record = rf.GroundMotion.from_arrays(
         (np.random.default_rng(1).normal(size=400_000), "m/s^2"), "0.005 s"
     )
@@ -241,7 +241,7 @@ def test_machine_code_leaves_the_interpreter_to_other_threads():
     assert longest[0] < 0.5 * took
 
 
-def test_an_interrupt_gives_back_what_is_done():
+def test_interrupt_returns_finished_cases():
     scales = np.linspace(0.1, 2.0, 20)
     with pytest.warns(SolverWarning) as said:
         runs = rf.sweep(SYSTEM, PULSE, scale=scales, **FAST, chunk=3, executor=Interrupting(4))
@@ -256,7 +256,7 @@ def test_an_interrupt_gives_back_what_is_done():
 
 @pytest.mark.wide
 @pytest.mark.skipif(sys.platform == "win32", reason="signals")
-def test_the_keyboard_itself_interrupts_own_threads(request):
+def test_sigint_interrupts_own_threads(request):
     calls = itertools.count()
 
     def scene(height):
@@ -284,7 +284,7 @@ class Broken(Executor):
         return found
 
 
-def test_an_executor_that_fails_is_an_error():
+def test_failing_executor_raises():
     with pytest.raises(StudyError, match="OSError: the worker has died"):
         rf.sweep(SYSTEM, PULSE, scale=[1.0], executor=Broken(), **FAST)
     with ProcessPoolExecutor(1) as pool, pytest.raises(StudyError, match="must be importable"):
@@ -316,7 +316,7 @@ def test_a_bar_counts_the_cases(capsys):
     assert "4/4" in shown
 
 
-def test_without_tqdm_a_bar_is_refused_only_where_it_was_asked_for(monkeypatch):
+def test_missing_tqdm_raises_only_if_progress_is_requested(monkeypatch):
     monkeypatch.setitem(sys.modules, "tqdm", None)
     assert rf.sweep(SYSTEM, PULSE, scale=[0.5], **FAST).status.item() == 0
     with pytest.raises(ComponentError, match=r"rockframe\[progress\]"):
@@ -324,7 +324,7 @@ def test_without_tqdm_a_bar_is_refused_only_where_it_was_asked_for(monkeypatch):
 
 
 @pytest.mark.filterwarnings("ignore::rockframe.errors.RecordWarning")
-def test_a_case_is_found_by_what_is_known_of_it(tmp_path, monkeypatch):
+def test_case_is_found_by_labels_motions_and_scene(tmp_path, monkeypatch):
     record = rf.GroundMotion.read(record_path("ElCentro1940_Peknold.AT2")).window("0 s", "4 s")
     runs = rf.sweep(SYSTEM, [PULSE, record], scale=[1.0, 2.0], **FAST)
     runs.to_netcdf(tmp_path / "runs.nc")
@@ -348,7 +348,7 @@ def test_a_case_is_found_by_what_is_known_of_it(tmp_path, monkeypatch):
     assert alone.simulate().peak_rotation == made.peak_rotation[0, 0, 0]
 
 
-def test_a_history_that_no_scene_of_a_sweep_has_is_told():
+def test_unknown_history_of_a_sweep_warns():
     asked = {"scale": [0.5, 1.0], "duration": "0.1 s", "accuracy": "fast"}
     with pytest.warns(ModelWarning, match="outputs names 'slip', which no scene of the cases has"):
         runs = rf.sweep(SYSTEM, PULSE, outputs=["slip", "rotation"], **asked)
@@ -357,7 +357,7 @@ def test_a_history_that_no_scene_of_a_sweep_has_is_told():
         rf.sweep(SYSTEM, PULSE, outputs=["body_rotation"], **asked)
 
 
-def test_further_rounds_of_an_analysis_leave_the_records_of_sweeps_at_hand(monkeypatch):
+def test_analysis_rounds_do_not_evict_records_of_sweeps(monkeypatch):
     monkeypatch.setattr(of_cases, "_CACHE_SIZE", 2)
     pulse = np.sin(np.linspace(0.0, 2.0 * np.pi, 51))
     record, rigid = rf.GroundMotion.from_arrays((pulse, "m/s^2"), "0.02 s"), rf.System(BLOCK)
@@ -386,7 +386,7 @@ def test_a_case_may_be_picked_from_a_part_of_a_sweep():
         rf.case(part.drop_vars("scale"), case=1, motion=1)
 
 
-def test_cases_that_are_not_there_are_refused():
+def test_missing_cases_are_refused():
     runs = rf.sweep(SYSTEM, PULSE, scale=[1.0, 2.0], width=["0.7 m", "0.8 m"], **FAST)
     for labels, words in (
         ({"scale": 1.0}, "give a value of 'width'"),
@@ -408,7 +408,7 @@ def test_cases_that_are_not_there_are_refused():
         rf.case(SYSTEM.simulate(PULSE, **FAST), scale=1.0)
 
 
-def test_the_integrator_is_asked_once_for_each_case(monkeypatch):
+def test_integrator_is_called_once_per_case(monkeypatch):
     asked = []
     whole = of_a_run.integrate
     monkeypatch.setattr(of_a_run, "integrate", lambda *a, **k: asked.append(1) or whole(*a, **k))
@@ -416,7 +416,7 @@ def test_the_integrator_is_asked_once_for_each_case(monkeypatch):
     assert len(asked) == 6
 
 
-def test_axes_of_the_initial_state_begin_runs_where_they_say(monkeypatch):
+def test_initial_state_axes_set_the_start_of_runs(monkeypatch):
     from rockframe.studies.sweeps import study
 
     axes = {
@@ -479,7 +479,7 @@ def test_axes_of_the_initial_state_begin_runs_where_they_say(monkeypatch):
         ({"initial_rotation": ["0 rad", "0.01 rad"]}, Changes.START),
     ],
 )
-def test_a_part_of_a_sweep_tells_no_system_that_is_another_ones(axis, changes):
+def test_subset_of_a_sweep_does_not_return_a_wrong_system(axis, changes):
     """Axes that change the system leave the one that was swept in the attributes."""
     runs = rf.sweep(SYSTEM, PULSE, **axis, **FAST)
     (name,) = axis

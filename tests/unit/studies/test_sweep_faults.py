@@ -40,7 +40,7 @@ def is_part_of(part, whole):
 
 
 @pytest.mark.long
-def test_killed_at_any_moment_it_goes_on_to_the_same_end(whole, tmp_path):
+def test_killed_sweep_resumes_to_identical_results(whole, tmp_path):
     folder, lost = tmp_path / "study", 0
     rng = random.Random(5)
     for _ in range(2):
@@ -69,7 +69,7 @@ def dying(height):
 
 @pytest.mark.wide
 @pytest.mark.skipif(not hasattr(signal, "SIGKILL"), reason="signals as of Unix")
-def test_a_worker_that_is_killed_is_told_of_and_loses_chunks_in_flight_only(tmp_path, monkeypatch):
+def test_killed_worker_loses_only_chunks_in_flight(tmp_path, monkeypatch):
     monkeypatch.setenv(MARK, str(tmp_path / "mark"))
     folder = tmp_path / "study"
     arguments = {"height": HEIGHTS, "chunk": 1, "progress": False}
@@ -114,7 +114,7 @@ def disk(tmp_path):
     found.leave()
 
 
-def test_a_full_disk_keeps_what_was_written(disk, whole):
+def test_full_disk_preserves_written_chunks(disk, whole):
     folder = disk.place / "study"
     with pytest.raises(StudyError, match=r"cannot be written.*No space left"):
         the_sweep(folder)
@@ -125,7 +125,7 @@ def test_a_full_disk_keeps_what_was_written(disk, whole):
     assert files(folder) == files(whole[0])
 
 
-def test_files_that_may_not_grow_are_told_of_like_a_full_disk(whole, tmp_path):
+def test_file_size_limit_raises_like_a_full_disk(whole, tmp_path):
     resource = pytest.importorskip("resource", reason="limits as of Unix")
     folder = tmp_path / "study"
     the_sweep(folder)
@@ -162,7 +162,7 @@ def test_a_folder_that_has_become_read_only_can_be_read(disk, whole):
     assert is_part_of(rf.open_study(folder), whole[1]) == CASES - 3
 
 
-def test_a_pool_that_breaks_as_a_chunk_is_handed_out_is_told_of():
+def test_pool_broken_on_submit_raises():
     class Broken(ThreadPoolExecutor):
         def submit(self, *_: object, **__: object) -> Future[object]:
             msg = "a child process terminated abruptly"

@@ -68,7 +68,7 @@ def test_values_with_units_become_si_whatever_their_form(values):
     assert again.width.attrs["units"] == "m"
 
 
-def test_names_that_two_parts_share_are_written_with_their_class():
+def test_parameters_shared_by_two_parts_need_a_class_prefix():
     with pytest.raises(
         StudyError, match=r"Block and CushionCap.*'Block.mass' or 'CushionCap.mass'"
     ):
@@ -81,7 +81,7 @@ def test_names_that_two_parts_share_are_written_with_their_class():
     assert case.system.parts.cap.mass.m_as("t") == 3.0
 
 
-def test_options_of_the_system_are_axes_too():
+def test_system_options_can_be_axes():
     runs = rf.sweep(
         ON_PADS, PULSE, axes={"System.rotation": ["finite", "small"]},
         restraint=["centre", "contact-state"], gravity=(["1 g_0", "3.7 m/s^2"]), **FAST,
@@ -96,14 +96,14 @@ def test_options_of_the_system_are_axes_too():
     assert told.item() == system.simulate(PULSE, **FAST).peak_rotation.item()
 
 
-def test_a_parameter_takes_the_place_of_the_one_that_it_stands_for():
+def test_alternative_parameter_replaces_the_original():
     runs = rf.sweep(ON_PADS, PULSE, stiffness=["5 MN/m", "9 MN/m"], **FAST)
     pads = rf.TwoSpringSupport(stiffness="9 MN/m", damping_ratio=0.1)
     alone = rf.System(BLOCK, pads).simulate(PULSE, **FAST)
     assert runs.peak_rotation[1, 0].item() == alone.peak_rotation.item()
 
 
-def test_parts_changed_in_si_are_those_changed_with_units():
+def test_with_si_equals_replace_with_units():
     for part, values, written in (
         (BLOCK, {"width": 0.1 + 0.2}, {"width": f"{0.1 + 0.2!r} m"}),
         (BLOCK, {"inertia": 5321.7}, {"inertia": "5321.7 kg m^2"}),
@@ -132,7 +132,7 @@ DRUM = rf.Block.cylinder(diameter="0.5 m", height="2 m", mass="400 kg")
         ({"height": ["3 m"], "shape_factor": [3.0]}, "axis 'height' would leave centre_height "),
     ],
 )
-def test_axes_that_would_leave_a_given_inertia_at_another_size_are_refused(axes, words):
+def test_axes_that_would_not_rescale_an_explicit_inertia_are_refused(axes, words):
     system = rf.System(DRUM)
     with pytest.raises(StudyError, match=words):
         rf.sweep(system, PULSE, axes=axes, **FAST)
@@ -144,7 +144,7 @@ def test_axes_that_would_leave_a_given_inertia_at_another_size_are_refused(axes,
             rf.probability_of_overturning(system, PULSE, spread=spread, cases=8, **FAST)
 
 
-def test_the_mass_of_a_body_told_by_its_shape_factor_makes_no_difference_on_rigid_ground():
+def test_mass_has_no_effect_on_rigid_ground_at_fixed_shape_factor():
     scaling = DRUM.replace(shape_factor=DRUM.shape_factor)
     runs = rf.sweep(rf.System(scaling), PULSE.scaled(2.0), mass=([200, 400, 800], "kg"), **FAST)
     told = rf.System(DRUM).simulate(PULSE.scaled(2.0), **FAST).peak_rotation.item()
@@ -155,14 +155,14 @@ def test_the_mass_of_a_body_told_by_its_shape_factor_makes_no_difference_on_rigi
     np.testing.assert_allclose(runs.peak_rotation.values.ravel(), told, rtol=1e-3)
 
 
-def test_scales_of_one_motion_are_told_apart_by_their_factors():
+def test_scaled_copies_of_a_motion_are_labelled_by_factor():
     motions = [PULSE.scaled(2.0), PULSE, PULSE.scaled(2.0), OTHER.scaled(3.0)]
     runs = rf.sweep(ON_PADS, motions, scale=[0.1], **FAST)
     twice = f"2 times {PULSE.name}"
     assert runs.motion.values.tolist() == [twice, PULSE.name, f"{twice} (2)", OTHER.name]
 
 
-def test_targets_scale_each_motion_to_an_intensity():
+def test_intensity_axes_scale_each_motion_to_the_target():
     motions = [PULSE, OTHER, PULSE]
     for name, target, keywords in (
         ("peak_ground_acceleration", "3 m/s^2", {"peak": "3 m/s^2"}),
@@ -208,7 +208,7 @@ def test_a_table_has_a_row_for_each_case():
     np.testing.assert_array_equal(again, runs.peak_rotation.sel(scale=1.0)[[0, 3, 4]])
 
 
-def test_a_function_gets_what_the_axes_hold():
+def test_scene_function_receives_axis_values():
     seen = []
 
     def scene(width, height, storeys, pads, stiff):
@@ -335,7 +335,7 @@ REFUSED = [
 ]  # fmt: skip
 
 
-def test_what_cannot_be_planned_is_refused_with_every_fault():
+def test_invalid_sweeps_are_refused_with_all_faults():
     for scene, motions, arguments, words in REFUSED:
         with pytest.raises(StudyError) as refused:
             rf.sweep(scene, motions, **arguments)
@@ -351,12 +351,12 @@ def test_what_cannot_be_planned_is_refused_with_every_fault():
         ({"progress": "yes"}, "progress must be True, False or None"),
     ],
 )
-def test_wrong_means_are_refused(option, words):
+def test_invalid_execution_options_are_refused(option, words):
     with pytest.raises(ComponentError, match=words):
         rf.sweep(ON_PADS, PULSE, scale=[1.0], **option)
 
 
-def test_unusual_values_are_warned_of_once():
+def test_unusual_values_warn_once():
     with pytest.warns(ModelWarning, match="damping_ratio = 5 is 500 %") as said:
         rf.sweep(ON_PADS, PULSE, damping_ratio=[0.1, 5.0, 10.0], **FAST)
     assert len(said) == 1
@@ -365,7 +365,7 @@ def test_unusual_values_are_warned_of_once():
 # abbreviations ----------------------------------------------------------------------------------
 
 
-def test_abbreviations_of_measures_are_the_axes_of_their_full_names():
+def test_measure_abbreviations_are_expanded_to_full_axis_names():
     system, sizes = rf.System(rf.Block(width="0.5 m", height="2 m", mass="400 kg")), [2.0, 4.0]
     for short, full, unit, more in (
         ("PGA", "peak_ground_acceleration", "m/s^2", {}),
@@ -391,7 +391,7 @@ def test_abbreviations_of_measures_are_the_axes_of_their_full_names():
         rf.sweep(system, PULSE, PGA=["1 m/s^2"], peak_ground_acceleration=["2 m/s^2"])
 
 
-def test_a_function_keeps_an_argument_of_that_name():
+def test_scene_function_argument_may_be_named_like_an_abbreviation():
     def scene(PGA):  # noqa: N803
         return rf.System(rf.Block(width="0.5 m", height=f"{PGA} m", mass="400 kg"))
 

@@ -46,7 +46,7 @@ def alone(runs, **labels):
         pytest.param(ON_GROUND, (), marks=pytest.mark.long),
     ],
 )
-def test_peaks_at_points_are_those_of_single_runs(system, outputs):
+def test_peaks_at_points_equal_single_runs(system, outputs):
     runs = rf.sweep(
         system, MOTIONS, scale=SCALES, points=POINTS, outputs=outputs, output_step="0.02 s",
         **FAST,
@@ -76,7 +76,7 @@ def test_peaks_at_points_are_those_of_single_runs(system, outputs):
                 assert part[name].isel(time=slice(own.sizes["time"], None)).isnull().all()
 
 
-def test_peaks_are_those_of_dense_histories_up_to_overturning():
+def test_point_peaks_match_dense_histories_up_to_overturning():
     point = {"roof": POINTS["roof"]}
     for scale in (0.5, 1.5):
         going_on = {"overturning": "continue", "duration": "6 s"}
@@ -95,7 +95,7 @@ def test_peaks_are_those_of_dense_histories_up_to_overturning():
         assert coarse.run_json.count('"outputs": null') == 1
 
 
-def test_a_corner_that_the_block_turns_about_does_not_move():
+def test_pivot_corner_does_not_move():
     start = rf.InitialState(rotation="0.05 rad")
     half, height = 0.4, 3.6
     found = ON_GROUND.simulate(
@@ -110,7 +110,7 @@ def test_a_corner_that_the_block_turns_about_does_not_move():
     assert across.sel(point="top").item() == pytest.approx(height * math.sin(0.05), rel=1e-12)
 
 
-def test_points_go_through_stores_screens_chunks_and_tables(tmp_path):
+def test_points_survive_stores_screening_chunks_and_tables(tmp_path):
     options = {"scale": SCALES, "points": POINTS, "outputs": ["point_horizontal_acceleration"]}
     plain = rf.sweep(ON_PADS, PULSE, **options, **FAST)
     kept = rf.sweep(ON_PADS, PULSE, **options, **FAST, store=tmp_path / "study", chunk=1)
@@ -144,7 +144,7 @@ def test_cases_without_a_run_have_no_peaks():
     assert runs[PEAKS].isel(height=1).to_array().notnull().all()
 
 
-def test_what_points_cannot_be_is_told_at_once():
+def test_invalid_points_are_refused():
     with pytest.raises(StudyError) as told:
         rf.sweep(ON_PADS, PULSE, scale=[1.0], points={"roof": ("1 kg", "2 m"), "shelf": "1 m"})
     assert "points['roof']" in str(told.value)

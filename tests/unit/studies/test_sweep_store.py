@@ -24,7 +24,7 @@ def whole(tmp_path_factory):
     return folder, the_sweep(folder)
 
 
-def test_what_is_kept_is_what_is_given(whole):
+def test_stored_sweep_equals_sweep_in_memory(whole):
     folder, runs = whole
     plain = the_sweep()
     assert as_bytes(runs) == as_bytes(plain)
@@ -39,7 +39,7 @@ def test_what_is_kept_is_what_is_given(whole):
 
 
 @pytest.mark.wide
-def test_many_chunks_stand_in_folders_of_their_own(tmp_path, monkeypatch):
+def test_many_chunks_are_split_into_subfolders(tmp_path, monkeypatch):
     folder, plain = tmp_path / "study", the_sweep()
     monkeypatch.setattr(store, "MAX_FILES_PER_FOLDER", 4)
     assert as_bytes(the_sweep(folder)) == as_bytes(plain)
@@ -57,7 +57,7 @@ def test_many_chunks_stand_in_folders_of_their_own(tmp_path, monkeypatch):
     assert as_bytes(rf.open_study(folder)) == as_bytes(plain)
 
 
-def test_it_can_be_read_while_it_runs(tmp_path):
+def test_store_can_be_read_while_the_sweep_runs(tmp_path):
     folder = tmp_path / "study"
     seen = []
 
@@ -71,7 +71,7 @@ def test_it_can_be_read_while_it_runs(tmp_path):
     assert 0 < max(seen) < 12  # of two threads either may look first
 
 
-def test_a_case_comes_from_the_folder_alone(whole, monkeypatch):
+def test_case_is_restored_from_the_folder_alone(whole, monkeypatch):
     folder, runs = whole
     monkeypatch.setattr(of_cases, "_studies", type(of_cases._studies)())
     for place in (folder, runs):  # a sweep knows the folder in which it was kept
@@ -80,7 +80,7 @@ def test_a_case_comes_from_the_folder_alone(whole, monkeypatch):
         assert found.simulate().peak_rotation.item() == runs.peak_rotation[17, 1, 0].item()
 
 
-def test_motions_with_a_vertical_component_are_kept_however_they_were_made(tmp_path, monkeypatch):
+def test_motions_with_vertical_component_survive_the_store(tmp_path, monkeypatch):
     def make(seed):
         return rf.GroundMotion.stochastic(6.6, "5 km", seed=seed, vertical=0.6)
 
@@ -122,7 +122,7 @@ def copied(whole, tmp_path):
     return folder
 
 
-def test_another_study_is_refused_with_the_difference(copied):
+def test_different_study_is_refused_with_the_difference(copied):
     for changes, words in (
         ({"scale": SCALES[:-1]}, r"differs in grid \(axes \(scale \(values\)\)\)"),
         ({"accuracy": "fast"}, r"arguments \(accuracy \(.*\), accuracy_name\)"),
@@ -132,7 +132,7 @@ def test_another_study_is_refused_with_the_difference(copied):
             the_sweep(copied, **changes)
 
 
-def test_another_function_is_another_study(tmp_path):
+def test_different_scene_function_is_refused(tmp_path):
     scenes = [lambda height: rf.System(BLOCK.replace(height=height))]
     scenes.append(lambda height: rf.System(BLOCK.replace(height=height), gravity="9 m/s^2"))
     arguments = {"height": ["3 m"], "store": tmp_path / "study"}
@@ -141,7 +141,7 @@ def test_another_function_is_another_study(tmp_path):
         rf.sweep(scenes[1], PULSE, **arguments)
 
 
-def test_other_versions_and_damaged_files_are_refused_with_a_reason(copied):
+def test_other_formats_and_damaged_files_are_refused(copied):
     head, chunk = copied / "study.json", copied / "chunk-000004.arrays"
     keep, plain = head.read_text(), chunk.read_bytes()
     for kept, words in (
@@ -182,7 +182,7 @@ def test_other_versions_and_damaged_files_are_refused_with_a_reason(copied):
         rf.open_study(copied)
 
 
-def test_damaged_labels_are_made_again(copied, whole):
+def test_damaged_labels_raise_and_are_rebuilt(copied, whole):
     labels = copied / "labels.arrays"
     plain = labels.read_bytes()
     labels.write_bytes(plain[:-1])
@@ -196,7 +196,7 @@ def test_damaged_labels_are_made_again(copied, whole):
     assert labels.read_bytes() == plain
 
 
-def test_a_study_of_another_version_is_read_and_not_gone_on_with(copied, whole):
+def test_study_of_another_version_can_be_read_but_not_resumed(copied, whole):
     head, last = copied / "study.json", copied / "chunk-000039.arrays"
     head.write_text(
         head.read_text().replace(
@@ -229,7 +229,7 @@ def test_a_folder_without_a_study_is_refused(tmp_path):
 
 
 @pytest.mark.skipif(not hasattr(os, "geteuid"), reason="permissions as of Unix")
-def test_where_nothing_can_be_written_it_says_so_at_once(tmp_path):
+def test_unwritable_folder_is_refused_at_once(tmp_path):
     folder = tmp_path / "closed"
     folder.mkdir()
     folder.chmod(0o555)
@@ -247,7 +247,7 @@ def test_where_nothing_can_be_written_it_says_so_at_once(tmp_path):
             os.seteuid(user)
 
 
-def test_a_write_that_fails_halfway_leaves_nothing(tmp_path, monkeypatch):
+def test_failed_write_preserves_the_old_file(tmp_path, monkeypatch):
     path = tmp_path / "one.arrays"
     write_arrays(path, {"name": "old"}, {"a": np.arange(3.0)})
     before = path.read_bytes()
@@ -262,7 +262,7 @@ def test_a_write_that_fails_halfway_leaves_nothing(tmp_path, monkeypatch):
     assert list(tmp_path.iterdir()) == [path]
 
 
-def test_arrays_come_back_as_they_were(tmp_path):
+def test_arrays_survive_file_round_trip(tmp_path):
     path = tmp_path / "one.arrays"
     arrays = {
         "a": np.array([[1.0, np.nan], [-0.0, np.inf]]), "none": np.zeros((0, 3)),
@@ -279,7 +279,7 @@ def test_arrays_come_back_as_they_were(tmp_path):
     assert read_arrays(path)[0] == described
 
 
-def test_half_written_files_of_the_dead_are_swept_away(copied):
+def test_stale_partial_files_are_removed(copied):
     dead, alive = copied / ".chunk-1.9.aa.part", copied / ".chunk-2.9.bb.part"
     dead.write_text("x")
     alive.write_text("x")
@@ -289,6 +289,6 @@ def test_half_written_files_of_the_dead_are_swept_away(copied):
     assert alive.exists()
 
 
-def test_the_warning_is_repeated_when_it_is_resumed(copied):
+def test_warning_is_repeated_on_resume(copied):
     with pytest.warns(SolverWarning, match="60 of 120 cases have no result"):
         the_sweep(copied)

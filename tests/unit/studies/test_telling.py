@@ -23,7 +23,7 @@ def runs():
     return rf.sweep(rf.System(BLOCK), MOTIONS, scale=[0.5, 1.0, 2.0, 4.0], free_vibration="3 s")
 
 
-def test_a_part_of_a_sweep_has_a_verdict_of_its_own(runs, tmp_path):
+def test_subset_of_a_sweep_has_its_own_verdict(runs, tmp_path):
     falls = int(runs.overturned.sum())
     assert 0 < falls < 8
     said = f"Of all 8 cases of the sweep {falls} overturned and {8 - falls} did not."
@@ -56,7 +56,7 @@ def test_cases_that_were_masked_are_not_counted(runs):
     assert runs.where(runs.scale > 0).rockframe.verdict == runs.verdict
 
 
-def test_figures_of_a_part_are_entitled_by_its_own_verdict():
+def test_figure_of_a_subset_is_titled_with_its_verdict():
     axes = pytest.importorskip("matplotlib.pyplot")
     drawn = rf.probability_of_overturning(
         rf.System(BLOCK), MOTIONS, spread={"scale": ("lognormal", 1.0, 0.4)}, cases=20
@@ -68,7 +68,7 @@ def test_figures_of_a_part_are_entitled_by_its_own_verdict():
 
 
 @pytest.mark.filterwarnings("ignore::rockframe.errors.ModelWarning")
-def test_texts_of_many_cases_are_summed_up(tmp_path):
+def test_messages_of_many_cases_are_merged(tmp_path):
     system = rf.System(BLOCK, rf.RigidGround(friction=0.1), sliding="checked")
     scales = np.linspace(0.5, 1.3, 6 * MAX_SIMILAR_TEXTS)
 
@@ -94,7 +94,7 @@ def test_texts_of_many_cases_are_summed_up(tmp_path):
     alike(swept(chunk=7, store=tmp_path / "study"), many)
 
 
-def test_of_many_cautions_the_most_frequent_is_told():
+def test_warning_quotes_the_most_frequent_caution():
     for texts, said in (
         (["none", "slides beyond", "soft", "soft", "none"], "3 .*; of 2 of them it is said: soft"),
         (["soft", "slides 3 m", "slides 1 m", "none", "soft 1"], "4 .* of 2 .* slides 1 to 3 m$"),
@@ -106,7 +106,7 @@ def test_of_many_cautions_the_most_frequent_is_told():
             warn_of_missing_results(runs, ())
 
 
-def test_numbers_of_texts_become_ranges_and_words_stay():
+def test_similar_messages_are_merged_into_ranges():
     texts = [
         "none",
         *(f"x2: {k / 10} m at {9 - k:.1e} s, Eq. (6)" for k in range(MAX_SIMILAR_TEXTS + 1)),
@@ -118,7 +118,7 @@ def test_numbers_of_texts_become_ranges_and_words_stay():
     assert merge_similar_texts(texts[:-1], message[:-1])[0] == tuple(texts[:-1])
 
 
-def test_a_part_of_a_fragility_tells_of_itself():
+def test_subset_of_a_fragility_has_its_own_verdict():
     runs = rf.sweep(
         rf.System(BLOCK), MOTIONS, scale=[1.0, 2.0, 4.0, 6.0], width=["0.5 m", "0.8 m"],
         free_vibration="2 s",
@@ -132,6 +132,6 @@ def test_a_part_of_a_fragility_tells_of_itself():
     assert found.verdict in found.rockframe.summary
 
 
-def test_a_comparison_of_models_has_a_verdict():
+def test_tradeoff_verdict_equals_the_recommendation():
     rungs = rf.tradeoff(rf.System(BLOCK), MOTIONS["strong"], accuracies=["fast"], repeats=1)
     assert rungs.verdict == rf.recommend(rungs).sentence == rungs.rockframe.verdict

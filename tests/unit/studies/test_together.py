@@ -125,7 +125,7 @@ def assert_same(together, alone):
         if (name, by) != TWICE
     ],
 )
-def test_random_studies_have_the_bits_of_scenes_on_their_own(monkeypatch, name, accuracy):
+def test_joint_assembly_is_bit_identical_to_single_assembly(monkeypatch, name, accuracy):
     scene, spreads = STUDIES[name]
     rng = np.random.default_rng([ord(letter) for letter in name])
     cases = table({**SIZE, **SCALE, **spreads}, rng)
@@ -134,7 +134,7 @@ def test_random_studies_have_the_bits_of_scenes_on_their_own(monkeypatch, name, 
     assert served > 0.5 * COUNT
 
 
-def test_starts_and_words_and_several_motions(monkeypatch):
+def test_joint_assembly_handles_starts_options_and_motions(monkeypatch):
     rng = np.random.default_rng(11)
     cases = table({**SIZE, "initial_rotation": (0.001, 0.05, "rad")}, rng, 3 * COUNT)
     cases["restraint"] = rng.choice(["centre", "contact-state"], 3 * COUNT)
@@ -147,7 +147,7 @@ def test_starts_and_words_and_several_motions(monkeypatch):
     assert served > COUNT
 
 
-def test_targets_other_than_a_factor_scale_the_motion(monkeypatch):
+def test_joint_assembly_scales_motions_to_intensity_targets(monkeypatch):
     rng = np.random.default_rng(12)
     cases = table({**SIZE, "peak_ground_acceleration": (1.0, 6.0, "m/s^2")}, rng)
     together, alone, served = both(
@@ -170,7 +170,7 @@ def test_screened_studies(monkeypatch):
     assert served > COUNT
 
 
-def test_bad_cases_among_good_ones_say_what_they_say_alone(monkeypatch):
+def test_invalid_cases_have_the_same_messages_in_joint_assembly(monkeypatch):
     rng = np.random.default_rng(14)
     cases = table({**SIZE, **SCALE, "restitution": (0.5, 1.0, None)}, rng)
     heights = cases["Block.height [m]"]
@@ -183,7 +183,7 @@ def test_bad_cases_among_good_ones_say_what_they_say_alone(monkeypatch):
     assert any("exceeds eps_max" in text for text in said)
 
 
-def test_functions_of_users_are_called_with_numbers(monkeypatch):
+def test_user_functions_are_called_with_scalars(monkeypatch):
     def scene(height):
         assert isinstance(height.m_as("m"), float)
         return rf.System(rf.Block(width="1 m", height=height, mass="1 t"))
