@@ -1,4 +1,4 @@
-"""Blocks on inclined bases in horizontal and vertical axes, by SciPy: nothing is turned here.
+"""Reference solutions of blocks on inclined bases by SciPy, in horizontal and vertical axes.
 
 The ground's points, the corners and the centre of mass are vectors to the right and upwards;
 gravity acts downwards. Rotations are those of the block in space, clockwise.

@@ -1,4 +1,4 @@
-"""A block on rigid ground made to measure, and what is read from its response."""
+"""A block of chosen slenderness on rigid ground, and quantities read from its response."""
 
 import itertools
 import math

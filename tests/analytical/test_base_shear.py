@@ -1,4 +1,4 @@
-"""The base shear is what accelerates what stands on the ground: Newton's second law.
+"""The base shear equals the rate of momentum of all bodies on the ground: Newton's second law.
 
 By another way than the equations of motion: displacements of a run with fine outputs are
 differentiated twice. The stencil has nine points, its error is of the eighth order of the

@@ -1,4 +1,4 @@
-"""The cascade against its definition, Eq. (20): two runs by hand, and their sum."""
+"""The cascade against its definition, Eq. (20): two separate runs, and their sum."""
 
 import math
 

@@ -1,4 +1,4 @@
-"""Peaks of a block on rigid ground that is let go, in closed form, and read back."""
+"""Peaks of free rocking on rigid ground in closed form, and parameters identified from them."""
 
 import itertools
 import math

@@ -1,4 +1,4 @@
-"""Blocks whose centre of mass is beside the middle of their base, in closed form."""
+"""Blocks with an eccentric centre of mass, in closed form."""
 
 import math
 

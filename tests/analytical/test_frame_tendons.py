@@ -1,4 +1,4 @@
-"""A rocking frame with tendons: closed forms, limits, energies, mirror, files and figures."""
+"""A rocking frame with tendons: closed forms, limits, energies, symmetry, files and figures."""
 
 import numpy as np
 import pytest

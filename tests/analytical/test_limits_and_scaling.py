@@ -1,4 +1,4 @@
-"""Stiff pads against rigid ground, and blocks of different size against one another."""
+"""Stiff pads approach rigid ground; responses of blocks of different size are similar."""
 
 import itertools
 import math

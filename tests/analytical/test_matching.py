@@ -1,4 +1,4 @@
-"""Spectral matching in time: its wavelets and its matrix by closed forms and other integrators."""
+"""Spectral matching in time: wavelets and matrix against closed forms and other integrators."""
 
 from functools import cache
 

@@ -1,4 +1,4 @@
-"""Maps of overturning on rigid ground, small rotations, beside closed forms."""
+"""Maps of overturning on rigid ground at small rotations against closed forms."""
 
 import math
 

@@ -1,4 +1,4 @@
-"""Verdicts that are proved, and what runs say at scales beside theirs."""
+"""Proved verdicts, and runs at neighbouring scales."""
 
 import json
 

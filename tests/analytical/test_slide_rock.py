@@ -1,4 +1,4 @@
-"""Sliding and rocking of the example of a scene of one's own, against closed forms."""
+"""Sliding and rocking of the example of a user-defined scene against closed forms."""
 
 import math
 

@@ -1,4 +1,4 @@
-"""A sliding contact is the limit of dry friction, keeps its level, dissipates, and has no side.
+"""A sliding contact is the limit of dry friction, stays level, dissipates, and is symmetric.
 
 Equations eq-sliding-contact, eq-partial-hold and eq-leaving-into-flight of the theory manual.
 """

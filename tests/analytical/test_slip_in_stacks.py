@@ -1,4 +1,4 @@
-"""Bodies of a stack that slide on rigid bases: closed forms, limits, balances, and refusals."""
+"""Sliding bodies of a stack on rigid bases: closed forms, limits, balances, and refusals."""
 
 import numpy as np
 import pytest

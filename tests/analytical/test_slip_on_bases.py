@@ -1,4 +1,4 @@
-"""A block that slips on pads and on a bed: limits, mirror images, energies, and what is told."""
+"""A block that slips on pads or a bed: limits, symmetry, energies, and warnings."""
 
 import numpy as np
 import pytest

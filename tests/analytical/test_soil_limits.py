@@ -1,4 +1,4 @@
-"""Soil and pads that grow stiff, caps that shrink: what a scene turns into."""
+"""Limits of scenes for stiff soil, stiff pads and small caps."""
 
 import numpy as np
 import pytest

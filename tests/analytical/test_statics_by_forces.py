@@ -1,4 +1,4 @@
-"""Statics from the forces of the equations: the closed forms, the energy, and chains of bodies."""
+"""Statics from the forces of the equations: closed forms, energy, and chains of bodies."""
 
 import math
 from itertools import pairwise, product

@@ -1,4 +1,4 @@
-"""Stacks of rigid bases and others held at a rotation, where a corner lifts from a rigid base."""
+"""Stacks on rigid and other bases, held at a rotation that lifts a corner off a rigid base."""
 
 import numpy as np
 import pytest

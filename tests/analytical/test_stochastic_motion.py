@@ -1,4 +1,4 @@
-"""Drawn motions against the model they are drawn from, and against another program's numbers.
+"""Stochastic motions against the model that they sample, and against numbers of SMSIM.
 
 The numbers of the other program are those of SMSIM 6.0, D. M. Boore's own, for magnitude 6.0 at
 20 km with the parameters of Boore and Thompson (2015) for western North America: its output of

@@ -1,4 +1,4 @@
-"""Subset simulation against probabilities in closed form, and how often its bounds hold them."""
+"""Subset simulation against probabilities in closed form, and the coverage of its bounds."""
 
 import math
 

@@ -1,4 +1,4 @@
-"""Blocks that slide with ties: limits, closed forms, mirror images, energies, and what is told."""
+"""Sliding blocks with ties: limits, closed forms, symmetry, energies, and warnings."""
 
 import math
 

@@ -1,4 +1,4 @@
-"""Two horizontal components against SciPy, rotated motions, closed forms and another library."""
+"""Two horizontal components against SciPy, rotated motions, closed forms and pyRotD."""
 
 import math
 

@@ -1,4 +1,4 @@
-"""Full contact with a bed is linear: Eq. (18), frequencies, and what else moves alike."""
+"""Full contact with a bed is linear: Eq. (18), frequencies, and equivalent two-spring supports."""
 
 import math
 from dataclasses import replace

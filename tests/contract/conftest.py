@@ -1,4 +1,4 @@
-"""The battery's axes."""
+"""Scenes and motions of tests that cover all of them."""
 
 from functools import cache
 

@@ -1,4 +1,4 @@
-"""Every scene that can be assembled, small enough to run the whole battery over each."""
+"""Every scene that can be assembled, small enough for tests that cover all of them."""
 
 import math
 from itertools import product

@@ -1,4 +1,4 @@
-"""What the page "Accuracy" says of the levels is what they do."""
+"""The page "Accuracy" describes the levels correctly."""
 
 import numpy as np
 import pytest

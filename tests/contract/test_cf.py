@@ -1,4 +1,4 @@
-"""Every dataset that is given away, in a file: the rules of CF-1.11 and a second reader.
+"""Files of every kind of dataset follow CF-1.11 and can be read by other libraries.
 
 The sections are those of the CF conventions; the file is looked at by netCDF4, which knows
 nothing of xarray, and in the classic format by SciPy, which knows nothing of netCDF's library.

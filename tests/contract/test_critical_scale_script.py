@@ -1,4 +1,4 @@
-"""The example of the critical scale: what it prints, keeps and refuses."""
+"""The example of the critical scale: its output, its file and its errors."""
 
 import runpy
 import sys

@@ -1,4 +1,4 @@
-"""The dataset of every scene: layout, types, attributes, as promised."""
+"""The dataset of every scene has the documented layout, types and attributes."""
 
 import math
 import re

@@ -1,4 +1,4 @@
-"""The examples in docstrings run as they stand, and show what they give; none is missing."""
+"""Examples in docstrings run and print what they show; every public function has one."""
 
 import doctest
 import importlib

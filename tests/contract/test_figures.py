@@ -1,4 +1,4 @@
-"""Every figure takes `units`, `ax` and `title`, and obeys them; the player has no `ax`."""
+"""Every figure takes and uses `units`, `ax` and `title`; the player has no `ax`."""
 
 import inspect
 

@@ -1,4 +1,4 @@
-"""What the pages say of floor motions is what the code and the example do."""
+"""The pages on floor motions agree with the code and the example."""
 
 import re
 import runpy

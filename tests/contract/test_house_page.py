@@ -1,4 +1,4 @@
-"""The page "The code in ten minutes" tells which rooms there are, and which uses which."""
+"""The page "The code in ten minutes" lists all rooms, and which uses which."""
 
 import ast
 import importlib

@@ -1,4 +1,4 @@
-"""What is loaded when: no more than a script asks for, beside what all of them need."""
+"""Imports load no more modules than a script needs."""
 
 import inspect
 import subprocess

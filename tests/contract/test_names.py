@@ -1,4 +1,4 @@
-"""One word for one thing: names of classes and functions stand once in the package."""
+"""Names of classes and functions are unique in the package."""
 
 import ast
 from collections import defaultdict

@@ -1,4 +1,4 @@
-"""Through a file with plain xarray, and back to a system that gives the same bits."""
+"""Datasets survive a file of plain xarray, and their system reproduces the run bit for bit."""
 
 import json
 from inspect import signature
@@ -86,7 +86,9 @@ CHECKS = (
 
 
 @pytest.mark.wide
-def test_every_response_survives_netcdf_round_trip(subtests, scene, motion_name, response, tmp_path):
+def test_response_survives_netcdf_round_trip(
+    subtests, scene, motion_name, response, tmp_path
+):
     before = response.copy(deep=True)
     known = {
         "scene": scene, "motion_name": motion_name, "response": response, "before": before,

@@ -1,4 +1,4 @@
-"""The example of office contents: what it prints and writes."""
+"""The example of office contents: its output and its file."""
 
 import runpy
 import sys

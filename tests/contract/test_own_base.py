@@ -1,4 +1,4 @@
-"""A base of a user's own, from the example's file: all that holds for parts holds for it."""
+"""A user-defined base, from the example's file, behaves like a base of the package."""
 
 import importlib
 import json

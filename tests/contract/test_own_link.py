@@ -1,4 +1,4 @@
-"""A link of a user's own, from the example's file."""
+"""A user-defined link, from the example's file."""
 
 import importlib.util
 import sys

@@ -1,4 +1,4 @@
-"""A scene of a user's own, from the example's file: all that holds for scenes holds for it."""
+"""A user-defined scene, from the example's file, behaves like a scene of the package."""
 
 import json
 import math

@@ -1,4 +1,4 @@
-"""The snippets of the guide, the recipes and the README run as they stand.
+"""The code on the pages of the guide, the recipes and the README runs.
 
 A block of text right after a snippet is what the snippet prints. Blocks of TOML that begin with
 the name of a file in a comment are written to it, and commands in consoles are carried out.

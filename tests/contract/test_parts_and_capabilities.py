@@ -1,4 +1,4 @@
-"""Walls, frames, tendons, loads, ties and mixed bases, and all that scenes offer: a table."""
+"""Walls, frames, tendons, loads, ties and mixed bases support every function of the package."""
 
 import json
 from contextlib import nullcontext

@@ -1,4 +1,4 @@
-"""The recipe for conda-forge asks for what pyproject.toml asks for, and is of this version."""
+"""The recipe for conda-forge has the dependencies of pyproject.toml and the current version."""
 
 import re
 import tomllib

@@ -1,4 +1,4 @@
-"""The page on random scenes, against what its command found."""
+"""The page on random scenes agrees with the data of its command."""
 
 import json
 

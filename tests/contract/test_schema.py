@@ -1,4 +1,4 @@
-"""The one table of variables: names, units, flags."""
+"""The schema of all variables: names, units, flags."""
 
 import re
 

@@ -1,4 +1,4 @@
-"""The example of a sweep: what it prints, keeps and refuses, and that it goes on."""
+"""The example of a sweep: its output, its file, its errors, and its resumption."""
 
 import runpy
 import sys

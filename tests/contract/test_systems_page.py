@@ -1,4 +1,4 @@
-"""What the page "Systems" says of options, arguments and scenes is what they do."""
+"""The page "Systems" describes options, arguments and scenes correctly."""
 
 import inspect
 import re

@@ -1,4 +1,4 @@
-"""Runs near and far from the boundary, and certificates of pretended runs."""
+"""Runs near and far from the boundary, and certificates of artificial runs."""
 
 from functools import cache
 

@@ -1,4 +1,4 @@
-"""Parts and runs that take one argument from a test."""
+"""Parts and runs with one argument chosen by a test."""
 
 import pint
 import pytest

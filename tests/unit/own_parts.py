@@ -1,4 +1,4 @@
-"""Parts as a user's own module defines them."""
+"""Parts of a user's module."""
 
 from dataclasses import dataclass
 from typing import NamedTuple

@@ -1,4 +1,4 @@
-"""Peaks and durations from both ends of steps, and from their insides."""
+"""Peaks and durations from both ends and the inside of steps."""
 
 import math
 

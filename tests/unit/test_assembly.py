@@ -1,4 +1,4 @@
-"""Putting a system together and asking it to run: what fits, what does not, what is said."""
+"""Assembling systems: parts that fit, refusals, options."""
 
 import copy
 import inspect

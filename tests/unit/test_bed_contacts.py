@@ -1,4 +1,4 @@
-"""The contacts of both ends of a bed, in one whole number."""
+"""The contacts of both ends of a bed in one integer."""
 
 import itertools
 

@@ -1,4 +1,4 @@
-"""Numbers of many cases go through the code of one, and have the bits of each alone."""
+"""Arithmetic of many cases equals that of single cases bit for bit."""
 
 import math
 

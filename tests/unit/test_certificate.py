@@ -1,4 +1,4 @@
-"""Certificates: how sure a verdict is."""
+"""Certificates: how certain a verdict is."""
 
 import math
 import re

@@ -1,4 +1,4 @@
-"""What a certificate says, and of which runs it can be made."""
+"""Sentences of certificates, and runs that can be certified."""
 
 import itertools
 import math

@@ -1,4 +1,4 @@
-"""A run that is certified by a proof, in its dataset, on the command line and in the report."""
+"""A run certified by a proof: its dataset, its command and its report."""
 
 import re
 from dataclasses import replace

@@ -1,4 +1,4 @@
-"""Checks by codes: worked numbers, the motion beside them, and their pages."""
+"""Checks by codes: worked examples, comparisons with motions, and their pages."""
 
 import math
 

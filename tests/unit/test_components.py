@@ -1,4 +1,4 @@
-"""Components as values: what they hold, what they refuse, the way to text and back."""
+"""Components as values: contents, refusals, representations."""
 
 import copy
 import inspect

@@ -1,4 +1,4 @@
-"""Contacts of corners with their pads, switched by hand: what one corner does to the other."""
+"""Contacts of corners with their pads: effects of switching one corner on the other."""
 
 import numpy as np
 import pytest

@@ -1,4 +1,4 @@
-"""The damping ratio of a base, and where its warning points."""
+"""The damping ratio of a base, and the location of its warning."""
 
 import pickle
 import warnings

@@ -1,4 +1,4 @@
-"""What a system says about itself: its model, its numbers and its limits."""
+"""Descriptions of systems: model, numbers and limits."""
 
 import math
 import re

@@ -1,4 +1,4 @@
-"""Elastic walls on all bases: against an equation written by hand, limits, energy, mirror."""
+"""Elastic walls on all bases: an independent equation, limits, energy, symmetry."""
 
 import math
 import re

@@ -1,4 +1,4 @@
-"""Runs that end while the block, which stands, can still overturn."""
+"""Runs that end while the standing block can still overturn."""
 
 import math
 from contextlib import nullcontext

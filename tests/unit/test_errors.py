@@ -1,4 +1,4 @@
-"""How messages show what was given, and how errors travel."""
+"""How messages show values, and how errors are raised and pickled."""
 
 import copy
 import pickle

@@ -1,4 +1,4 @@
-"""Files that are written: none that is read or somebody else's is lost, none is left half done."""
+"""Written files replace no inputs or foreign files, and are never left incomplete."""
 
 import ast
 import os

@@ -1,4 +1,4 @@
-"""The frame as an equivalent block: its members, what they come to, what is refused."""
+"""The frame as an equivalent block: its members, its properties, refusals."""
 
 import copy
 import dataclasses

@@ -1,4 +1,4 @@
-"""Regular frames, the table of members, and what is refused."""
+"""Regular frames, the table of members, and refusals."""
 
 import itertools
 import math

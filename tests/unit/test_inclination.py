@@ -1,4 +1,4 @@
-"""What an inclination is given as, and what refuses one."""
+"""Inclinations: accepted values, refusals, and effects on runs and analyses."""
 
 import math
 import warnings

@@ -1,4 +1,4 @@
-"""A bed of single springs, each of which touches or not: far more modes than a run meets."""
+"""A bed of single springs, with far more possible modes than a run reaches."""
 
 from contextlib import contextmanager
 from dataclasses import replace

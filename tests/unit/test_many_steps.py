@@ -1,4 +1,4 @@
-"""Runs of so many steps that not all of them are kept."""
+"""Runs of more steps than are stored."""
 
 import pytest
 

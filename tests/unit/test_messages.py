@@ -1,4 +1,4 @@
-"""What is said to those who try what seems natural: which argument, and how it is written."""
+"""Messages for natural but wrong usage name the argument and show its correct form."""
 
 import gzip
 import logging

@@ -1,4 +1,4 @@
-"""What users get wrong: each is refused in rockframe's words, whatever was given."""
+"""Invalid values of any type are refused with errors of rockframe."""
 
 import warnings
 from pathlib import Path

@@ -1,4 +1,4 @@
-"""The file that OpenSees runs: its numbers, and, where openseespy is installed, what it finds."""
+"""The exported OpenSees file: its numbers, and its results where openseespy is installed."""
 
 import csv
 import importlib.util

@@ -1,4 +1,4 @@
-"""What parts give back, how they are changed, and what their signatures and docs show."""
+"""Attributes of parts, copies with changes, signatures and docstrings."""
 
 import copy
 import inspect

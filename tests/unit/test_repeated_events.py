@@ -1,4 +1,4 @@
-"""Events, and steps, that change nothing."""
+"""Events and steps that change nothing."""
 
 from types import SimpleNamespace
 

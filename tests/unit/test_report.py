@@ -1,4 +1,4 @@
-"""Reports: what stands in them, and that they need no other file."""
+"""Reports: contents, and independence from other files."""
 
 import datetime
 import inspect

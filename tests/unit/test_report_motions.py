@@ -1,4 +1,4 @@
-"""Reports: the spectra of the motions beside their target, their records, and checks by codes."""
+"""Reports: spectra of motions and their target, records, and checks by codes."""
 
 import re
 import warnings

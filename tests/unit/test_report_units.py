@@ -1,4 +1,4 @@
-"""Reports in units of the reader: no sentence of them is left in another one."""
+"""Reports in display units: no value is left in another unit."""
 
 import re
 from html import unescape

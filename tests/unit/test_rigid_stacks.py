@@ -1,4 +1,4 @@
-"""Stacks on rigid bases: how they start, what a run shows, and beside pads and soil."""
+"""Stacks on rigid bases: initial states, results, and comparison with pads and soil."""
 
 import math
 

@@ -1,4 +1,4 @@
-"""Columns under a beam: the part, the scene, and what runs, figures and files make of it."""
+"""Columns under a beam: the part, the scene, runs, figures and files."""
 
 import json
 import pickle

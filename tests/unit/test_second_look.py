@@ -1,4 +1,4 @@
-"""Single runs at "fast" are made a second time, and tell what is not sure of them."""
+"""Single runs at "fast" are repeated with a finer step to estimate their error."""
 
 import math
 import warnings

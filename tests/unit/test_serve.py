@@ -1,4 +1,4 @@
-"""The local page: who is answered, what it says of wrong values, the scene that it hands out."""
+"""The local page: access, reports of wrong values, and the scene file for download."""
 
 import re
 import subprocess

@@ -1,4 +1,4 @@
-"""Arguments that several functions take: in signatures, docstrings and refusals."""
+"""Arguments shared by several functions: signatures, docstrings and refusals."""
 
 import inspect
 import pickle

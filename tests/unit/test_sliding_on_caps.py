@@ -1,4 +1,4 @@
-"""A block that slides on its cap, and a cap on its soil: a stack of two, with the cap's names."""
+"""A block that slides on its cap, and a cap on its soil, as a stack of two bodies."""
 
 import matplotlib.pyplot as plt
 import numpy as np

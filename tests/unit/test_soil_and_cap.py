@@ -1,4 +1,4 @@
-"""Soil and cap as values: what they hold, what they refuse, the way to text and back."""
+"""Soil and cap as values: contents, refusals, representations."""
 
 import copy
 import json

@@ -1,4 +1,4 @@
-"""What is said of a run whose energies do not balance."""
+"""Warnings of runs whose energies do not balance."""
 
 from dataclasses import replace
 

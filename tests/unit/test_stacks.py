@@ -1,4 +1,4 @@
-"""Stacks: the part, its scenes, and what a run shows of its bodies."""
+"""Stacks: the part, its scenes, and results of its bodies."""
 
 import pickle
 

@@ -1,4 +1,4 @@
-"""Results as tables: heads with units, words for flags, labels that tell runs apart."""
+"""Results as tables: headings with units, words for flags, labels that distinguish runs."""
 
 import runpy
 import sys

@@ -1,4 +1,4 @@
-"""What the unit boundary lets in, what it refuses, and what it says then."""
+"""Units of arguments: accepted spellings, refusals, and messages."""
 
 import math
 import multiprocessing

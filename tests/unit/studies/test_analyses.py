@@ -1,10 +1,10 @@
-"""Maps, spectra, probabilities, ensembles, sequences: labels, brute force, files."""
+"""Maps, spectra, probabilities, ensembles, sequences: labels, single runs, files."""
 
 import numpy as np
 import pytest
 import xarray as xr
 from scipy import stats
-from unit.studies.analysed import BLOCK, FAST, QUIET, SYSTEM, checked, motions, whole_analysis
+from unit.studies.small_analyses import BLOCK, FAST, QUIET, SYSTEM, checked, motions, whole_analysis
 
 import rockframe as rf
 from rockframe.errors import ComponentError, SchemaError, StudyError

@@ -1,4 +1,4 @@
-"""Axes that name what a system has without being given it."""
+"""Axes of parameters that a system implies, sizes of blocks, and units of labels."""
 
 import numpy as np
 import pint

@@ -1,4 +1,4 @@
-"""Several jobs on one study: what one has claimed no other runs, unless it is dead."""
+"""Several jobs on one study: each claims its chunks, and claims of ended jobs expire."""
 
 import json
 import os

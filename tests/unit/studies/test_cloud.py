@@ -1,4 +1,4 @@
-"""Cloud analysis: least squares and logistic regression by other means, curves and coverage."""
+"""Cloud analysis: independent least squares and logistic regression, curves and coverage."""
 
 import math
 

@@ -1,4 +1,4 @@
-"""Spreads that go together: distributions that stay, rank correlations by the closed form."""
+"""Correlated spreads: marginal distributions, and rank correlations in closed form."""
 
 import math
 

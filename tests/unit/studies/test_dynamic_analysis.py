@@ -6,7 +6,7 @@ from functools import cache
 import numpy as np
 import pytest
 import xarray as xr
-from unit.studies.analysed import FAST, QUIET, SYSTEM, checked, motions, whole_analysis
+from unit.studies.small_analyses import FAST, QUIET, SYSTEM, checked, motions, whole_analysis
 
 import rockframe as rf
 from rockframe.errors import ComponentError, ModelWarning, SchemaError, SolverWarning

@@ -1,4 +1,4 @@
-"""Dynamic analyses over further axes: each structure has the capacities that it has alone."""
+"""Dynamic analyses over further axes: each structure has the capacities of a single analysis."""
 
 import numpy as np
 import pytest

@@ -1,4 +1,4 @@
-"""Ensembles, samples, maps: what is one population, which runs say nothing, few cases."""
+"""Ensembles, samples and maps: one population, runs without a result, few cases."""
 
 import numpy as np
 import pytest

@@ -1,4 +1,4 @@
-"""Finding flips along a scale: verdicts and clearances made up for the purpose."""
+"""Finding flips along a scale, with artificial verdicts and clearances."""
 
 import math
 from dataclasses import replace

@@ -1,4 +1,4 @@
-"""Fragilities: Baker's numbers, brute force, coverage, and what has no fit."""
+"""Fragilities: Baker's numbers, brute force, coverage, and samples without a fit."""
 
 import numpy as np
 import pandas as pd

@@ -1,4 +1,4 @@
-"""Bounds of fragilities: covariances by hand, how often they hold, and what is said of them."""
+"""Bounds of fragilities: covariances by hand, coverage, and warnings."""
 
 import numpy as np
 import pytest

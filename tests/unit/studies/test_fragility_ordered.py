@@ -1,4 +1,4 @@
-"""Fragilities with one dispersion: an independent fit, curves in order, what is refused."""
+"""Fragilities with one dispersion: an independent fit, ordered curves, refusals."""
 
 import itertools
 

@@ -1,4 +1,4 @@
-"""Fragilities of several structures: a curve for each, and none from what is no sweep."""
+"""Fragilities of several structures: a curve for each; other datasets are refused."""
 
 import numpy as np
 import pytest

@@ -1,4 +1,4 @@
-"""Friction that a base is said to have: studies are held to it, as single runs are."""
+"""Studies check whether a base would slide, as single runs do."""
 
 import numpy as np
 import pytest

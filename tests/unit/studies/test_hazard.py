@@ -1,4 +1,4 @@
-"""Annual rates: the closed form of a power law, quadrature of a table, and what lies beyond it."""
+"""Annual rates: the closed form of a power law, quadrature of a table, and its tails."""
 
 import itertools
 import math

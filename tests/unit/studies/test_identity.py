@@ -1,4 +1,4 @@
-"""What a study is: whatever changes its numbers changes its digest, and nothing is forgotten."""
+"""The digest of a study changes with whatever changes its numbers."""
 
 import inspect
 import shutil

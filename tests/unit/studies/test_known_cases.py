@@ -1,4 +1,4 @@
-"""Studies that are extended by motions and values, or combined: what others have run is not run."""
+"""Extended and combined studies reuse stored cases instead of running them again."""
 
 import numpy as np
 import pytest

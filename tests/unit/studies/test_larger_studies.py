@@ -1,4 +1,4 @@
-"""Studies that are larger than the memory: read as they are used, told of before they begin."""
+"""Studies larger than memory are read lazily, and are announced before they begin."""
 
 import tracemalloc
 

@@ -1,4 +1,4 @@
-"""Intensity measures side by side, against regressions by other means and samples that are made."""
+"""Comparison of intensity measures against independent regressions and artificial samples."""
 
 import math
 

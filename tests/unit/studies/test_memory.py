@@ -1,4 +1,4 @@
-"""What a study needs of memory: told before it begins, refused where there is not so much."""
+"""Memory of a study: estimated before it begins, and refused if there is not enough."""
 
 import tracemalloc
 

@@ -1,4 +1,4 @@
-"""One bar over all runs of an analysis, whose total grows with its rounds."""
+"""One progress bar over all runs of an analysis, whose total grows with its rounds."""
 
 import sys
 import types

@@ -1,4 +1,4 @@
-"""Sweeps of scenes with restrainers and several bodies: what is told of each, and its labels."""
+"""Sweeps of scenes with restrainers and several bodies: variables and labels of each."""
 
 import numpy as np
 import pytest

@@ -1,4 +1,4 @@
-"""A study that is kept says what it says in memory: of every analysis, whatever motions are called.
+"""Analyses of a stored study equal those in memory, whatever its motions are called.
 
 Names are in no order, motions of different lengths, so that neither may stand for the other.
 """

@@ -1,4 +1,4 @@
-"""Subset simulation: brute force, ties, stores, interrupts, labels, and what is refused."""
+"""Subset simulation: brute force, ties, stores, interrupts, labels, and refusals."""
 
 import numpy as np
 import pytest

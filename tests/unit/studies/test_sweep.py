@@ -1,4 +1,4 @@
-"""Running a sweep: cases that fail, histories, who runs it, interrupts, and cases alone."""
+"""Running a sweep: failing cases, histories, executors, interrupts, and single cases."""
 
 import itertools
 import json

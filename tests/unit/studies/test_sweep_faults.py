@@ -1,4 +1,4 @@
-"""A sweep in a folder: processes that are killed, and disks that are full or read-only."""
+"""A stored sweep: killed processes, and disks that are full or read-only."""
 
 import ctypes
 import os

@@ -1,4 +1,4 @@
-"""What a sweep is asked for: axes, tables, motions; what is refused before anything runs."""
+"""Axes, tables and motions of a sweep, and refusals before anything runs."""
 
 import numpy as np
 import pandas as pd

@@ -1,4 +1,4 @@
-"""Sweeps that tell of points of the body: peaks over `point`, and histories on request."""
+"""Points of the body in sweeps: peaks over `point`, and histories on request."""
 
 import math
 

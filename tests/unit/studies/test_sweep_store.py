@@ -1,4 +1,4 @@
-"""The folder in which a sweep is kept: what it holds, when it is resumed, damaged or another's."""
+"""The folder of a stored sweep: contents, resumption, damage, and other studies."""
 
 import os
 import time

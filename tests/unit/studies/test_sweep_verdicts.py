@@ -1,4 +1,4 @@
-"""What is said of a sweep: of a part of it nothing that is another's, of many cases no list."""
+"""Verdicts of parts of a sweep, and summaries of messages of many cases."""
 
 import numpy as np
 import pytest

@@ -1,4 +1,4 @@
-"""What real users write wrongly: each row is refused in rockframe's words, which name the offender.
+"""Frequent mistakes of users: each row is refused with a message that names the wrong argument.
 
 A row is a call and what its message must say. Those of Python are written as texts, so that a fault
 names its row; those of the command line are what was typed. Junk in single arguments is

@@ -1,4 +1,4 @@
-"""Bodies that ties hold as they are brought slowly to a rotation, and ties whose points meet."""
+"""Tied bodies that are brought slowly to a rotation, and ties whose points coincide."""
 
 import math
 

@@ -1,4 +1,4 @@
-"""What a model shows of a state is that state's, whatever was looked at before.
+"""Outputs of a state depend on that state alone, not on states evaluated before.
 
 Equations of several bodies and links keep room for what they work out; nothing that an earlier
 state left there may be shown of another one.

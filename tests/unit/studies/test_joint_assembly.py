@@ -1,4 +1,4 @@
-"""Cases that are assembled together give what each gives on its own, bit for bit.
+"""Cases that are assembled together equal cases assembled one by one, bit for bit.
 
 Random studies of each kind of scene, with every axis that its numbers follow from.
 """

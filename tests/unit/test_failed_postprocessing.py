@@ -1,4 +1,4 @@
-"""A run that has been integrated is not lost, whatever fails in telling what it showed."""
+"""Failed postprocessing does not lose an integrated run."""
 
 import math
 from functools import cached_property

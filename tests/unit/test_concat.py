@@ -1,4 +1,4 @@
-"""Many runs in one dataset: nothing that is said of one run is said of all."""
+"""Joining runs into one dataset: attributes of single runs do not describe all."""
 
 import itertools
 

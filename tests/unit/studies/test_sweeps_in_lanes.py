@@ -1,4 +1,4 @@
-"""Cases that run side by side in lanes give the numbers of cases that run alone, bit for bit."""
+"""Cases that run together in lanes equal single runs bit for bit."""
 
 import math
 from concurrent.futures import ProcessPoolExecutor, ThreadPoolExecutor
