@@ -86,9 +86,7 @@ CHECKS = (
 
 
 @pytest.mark.wide
-def test_response_survives_netcdf_round_trip(
-    subtests, scene, motion_name, response, tmp_path
-):
+def test_response_survives_netcdf_round_trip(subtests, scene, motion_name, response, tmp_path):
     before = response.copy(deep=True)
     known = {
         "scene": scene, "motion_name": motion_name, "response": response, "before": before,

@@ -203,9 +203,7 @@ def test_example_without_its_file_exits_with_one_line(name, tmp_path, monkeypatc
 
 
 @pytest.mark.skipif(not COMPILED, reason="this run does without compilation")
-def test_unwritable_cache_folder_is_logged_once(
-    tmp_path, monkeypatch, caplog
-):
+def test_unwritable_cache_folder_is_logged_once(tmp_path, monkeypatch, caplog):
     own = tmp_path / "own_entries.py"
     own.write_text(
         "from rockframe.compiled import Vector, entry\n\n"

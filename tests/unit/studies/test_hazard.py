@@ -51,9 +51,7 @@ def test_a_power_law_gives_the_closed_form_of_cornell(curve, exponent):
 
 
 @pytest.mark.parametrize(("exponent", "spread"), [(8.0, 0.4), (4.0, 2.0), (8.0, 2.0), (30.0, 1.5)])
-def test_steep_hazard_and_wide_dispersion_match_quadrature(
-    curve, exponent, spread
-):
+def test_steep_hazard_and_wide_dispersion_match_quadrature(curve, exponent, spread):
     wide = curve.assign(dispersion=curve.dispersion * 0.0 + spread)
     median, ends = curve.median_intensity.item(), np.log([0.5, 20.0])
 
