@@ -30,7 +30,7 @@ def made():
 
 @cache
 def whole_analysis():
-    """Return an analysis of all motions, made once in a process; tests do not change it."""
+    """Return an analysis of all motions, computed once per process; tests do not change it."""
     return rf.incremental_dynamic_analysis(
         SYSTEM, motions(), scale=np.arange(0.5, 6.1, 0.5), limits=["uplift", 0.4],
         intensity="PGA", free_vibration="4 s", **QUIET,
@@ -38,7 +38,7 @@ def whole_analysis():
 
 
 def checked(dataset, tmp_path):
-    """Whether variables have the units of the schema, and files hold the dataset."""
+    """Check names and units of variables, and the round trip of a dataset through a file."""
     for name, one in dataset.variables.items():
         assert one.attrs.get("long_name"), name
         if name in SCHEMA and SCHEMA[name].unit is not None:

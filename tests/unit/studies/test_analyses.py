@@ -226,7 +226,7 @@ def test_ensemble_bands_have_nominal_coverage():
             xr.DataArray(rng.random(count), dims="motion", name="share"),
             quantiles=[0.5], confidence=0.9,
         )  # fmt: skip
-        # the distribution function at a fixed place is a fixed number
+        # the distribution function at a fixed value is a fixed number
         below = found.ordered_value.values <= 0.4
         low = found.cumulative_probability_lower_bound.values[below]
         high = found.cumulative_probability_upper_bound.values[below]
@@ -282,7 +282,7 @@ def test_study_figures_draw_their_dataset_and_refuse_others(analysis):
 
 
 def test_earthquake_sequence_equals_continued_runs(tmp_path):
-    """Each starts where the one before ended: the same as going on from its dataset."""
+    """Each earthquake starts where the one before ended, as a run continued from its dataset."""
     system = rf.System(BLOCK, rf.TwoSpringSupport(frequency_ratio=15, damping_ratio=0.1))
     one, two = list(motions().values())[:2]
     two = two.with_vertical(one.scaled(0.3))
@@ -303,7 +303,7 @@ def test_earthquake_sequence_equals_continued_runs(tmp_path):
 @pytest.mark.parametrize("step", ["0.02 s", "0.004 s", "0.0125 s"])
 @pytest.mark.parametrize("first", [0, 1])
 def test_sequence_of_unlike_time_steps_equals_continued_runs(step, first):
-    """Each earthquake is the function of time that it is alone."""
+    """Each earthquake is the same function of time as in a single run."""
     coarse = motions()["seed 1"].resampled(step)
     vertical = motions()["seed 0"]
     several = [coarse, vertical.with_vertical(vertical.scaled(0.4))]

@@ -129,7 +129,7 @@ def test_case_label_without_unit_raises_with_an_example():
 
 
 def test_arrays_are_converted_from_their_units_attribute() -> None:
-    """Of ratios it was left out, and 70 % were 70."""
+    """The unit of ratios was once ignored, so that 70 % became 70."""
     system = rf.System(BLOCK, PADS)
     percent = xr.DataArray([20.0, 70.0], attrs={"units": "%"})
     runs = rf.sweep(system, PULSE, scale=percent, duration="2 s")
@@ -166,7 +166,7 @@ def test_conflicting_units_of_an_array_are_refused() -> None:
 
 @pytest.mark.parametrize("name", ["width [m]", "scale [%]"])
 def test_masked_columns_are_refused(name: str) -> None:
-    """What is behind the mask took its place."""
+    """The hidden value was once used in its place."""
     system = rf.System(rf.Block(width="0.5 m", height="3 m", mass="2 t"))
     column = np.ma.array([0.5, 0.6], mask=[False, True])
     with pytest.raises(StudyError, match="has masked values; fill them in first"):
@@ -219,7 +219,7 @@ def test_dates_and_oversized_integers_are_refused_as_axis_values(values: np.ndar
 
 
 def test_converted_labels_are_read_in_their_own_unit() -> None:
-    """For a figure, say; they were taken for SI units, in which cases and measures are."""
+    """Converted labels, as for a figure, were once read as SI units."""
     system = rf.System(rf.Block(width="0.5 m", height="2 m", mass="400 kg"))
     motions = {f"{f} Hz": rf.GroundMotion.sine_pulse("1 m/s^2", f"{f} Hz") for f in (1, 2, 3)}
     size = {"height": ["2 m", "2.4 m"], "PGA": ["3 m/s^2", "6 m/s^2", "12 m/s^2"]}

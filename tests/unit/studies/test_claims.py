@@ -42,7 +42,7 @@ def another(tmp_path):
 @pytest.fixture
 def this(tmp_path, monkeypatch):
     """Run the study in this process too, noting its chunks."""
-    monkeypatch.setattr(Study, "job", Study.job)  # to be put back
+    monkeypatch.setattr(Study, "job", Study.job)  # so that it is restored
     note_cases(tmp_path / "log 1")
     return lambda: the_sweep(tmp_path / "study")
 
@@ -56,19 +56,19 @@ def run_by(tmp_path):
 def is_whole(folder, whole, *, killed=False):
     assert files(folder) == files(whole[0])
     assert as_bytes(rf.open_study(folder)) == as_bytes(whole[1])
-    # a job that is killed while it writes leaves its part of a file, hidden, which nobody reads
+    # a job that is killed while it writes leaves a hidden partial file, which is never read
     left = {path.name for path in folder.iterdir() if not (killed and path.match(".*.part"))}
     assert left == {path.name for path in whole[0].iterdir()}
 
 
 @pytest.mark.long
 def test_two_jobs_run_each_case_once(whole, tmp_path, another, this):
-    assert as_bytes(this()) == as_bytes(whole[1])  # each gives the whole
+    assert as_bytes(this()) == as_bytes(whole[1])  # each returns all cases
     out, err = another.communicate(timeout=300)
     assert out.strip() == "done", err
     is_whole(tmp_path / "study", whole)
     assert run_by(tmp_path) == Counter(range(0, CASES, 3))
-    assert len([*tmp_path.glob("log *")]) == 2  # both have had a part
+    assert len([*tmp_path.glob("log *")]) == 2  # both have run some
 
 
 @pytest.mark.skipif(not KNOWS_PROCESSES, reason="the system does not tell of processes")
@@ -81,7 +81,7 @@ def test_chunks_of_a_killed_job_are_taken_over(whole, tmp_path, another, this):
         another.communicate()
         begun = time.monotonic()
         going_on.result(timeout=300)
-    assert time.monotonic() - begun < 0.5 * module._TIMEOUT  # it does not wait for the dead
+    assert time.monotonic() - begun < 0.5 * module._TIMEOUT  # it does not wait for the killed job
     is_whole(tmp_path / "study", whole, killed=True)
     run = run_by(tmp_path)
     assert set(run) == set(range(0, CASES, 3))
@@ -165,16 +165,16 @@ def test_claims_expire_after_the_timeout(tmp_path, monkeypatch, content):
     path, one = claim(tmp_path, content), Claims(tmp_path)
     now = [1000.0]
     monkeypatch.setattr(module.time, "monotonic", lambda: now[0])
-    os.utime(path, (0, 0))  # clocks of other machines tell nothing
+    os.utime(path, (0, 0))  # clocks of other machines may differ
     assert not one.take(7)
     now[0] += 0.9 * module._TIMEOUT
     assert not one.take(7)
-    os.utime(path)  # it lives
+    os.utime(path)  # the claim has been renewed
     now[0] += 0.9 * module._TIMEOUT
     assert not one.take(7)
     now[0] += 1.1 * module._TIMEOUT
     other = Claims(tmp_path)
-    assert not other.take(7)  # it has not been looking for so long
+    assert not other.take(7)  # the other job has not been watching for so long
     assert one.take(7)
     assert not other.take(7)
 
@@ -204,7 +204,7 @@ def test_claims_of_ended_processes_expire_immediately(tmp_path):
     running.communicate(b"\n")
     assert one.take(7)
     assert not other.take(7)
-    # a later process of the same number is another one
+    # a later process with the same number is a different one
     claim(tmp_path, module._this_job() | {"begun": "1"}, 8)
     assert one.take(8)
     claim(tmp_path, module._this_job(), 9)

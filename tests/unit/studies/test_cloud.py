@@ -25,7 +25,7 @@ def base():
 
 
 def made(base, seed=0, *, falls=True, rests=False):
-    """Responses about a line, with overturning as a logistic curve has it."""
+    """Return responses about a line, with overturning drawn from a logistic curve."""
     rng = np.random.default_rng(seed)
     logs = rng.normal(0.0, 0.6, COUNT)
     response = np.exp(-1.5 + 1.3 * logs + 0.35 * rng.standard_normal(COUNT))
@@ -44,7 +44,7 @@ def made(base, seed=0, *, falls=True, rests=False):
 
 
 def logistic_by_weights(logs, verdict):
-    """Iteratively reweighted least squares, as textbooks have it."""
+    """Fit a logistic curve by iteratively reweighted least squares."""
     design = np.column_stack([np.ones(len(logs)), logs])
     at = np.zeros(2)
     for _ in range(50):
@@ -100,7 +100,7 @@ def test_overturning_is_fitted_by_logistic_regression(base):
     )
     over = found.sel(limit_state="overturning")
     assert over.median_intensity.item() == pytest.approx(math.exp(-at[0] / at[1]), rel=1e-4)
-    # a logistic curve is at Phi(1) one unit of its logit away
+    # a logistic curve reaches Phi(1) at this logit
     reach = math.log(stats.norm.cdf(1.0) / stats.norm.cdf(-1.0)) / at[1]
     assert over.dispersion.item() == pytest.approx(reach, rel=1e-3)
     assert int(found.cloud_overturned_count) == fell.sum() == np.isinf(found.cloud_response).sum()
@@ -161,11 +161,11 @@ def test_cloud_bounds_have_nominal_coverage():
 
 
 def test_curve_above_one_half_everywhere_has_zero_median_bound(base):
-    """Of few runs many draws of the overturning probability fall with the intensity."""
+    """With few runs, the overturning probability decreases with intensity in many draws."""
     rng = np.random.default_rng(2)
     logs = rng.normal(0.5, 0.6, 12)
     response = np.exp(-2.0 + 1.5 * logs + 0.3 * rng.standard_normal(12))
-    fell = np.arange(12) == np.argsort(logs)[-2]  # one alone
+    fell = np.arange(12) == np.argsort(logs)[-2]  # a single one
     cloud = Cloud.fit(logs, np.where(fell, np.inf, response))
     wide = np.linspace(logs.min() - 3.0, logs.max() + 3.0, 601)
     curves = cloud.draw_curves(wide, 0.1, np.random.default_rng(0), 4000)

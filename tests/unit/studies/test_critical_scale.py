@@ -44,7 +44,7 @@ CASES = {
 OF_A_RUN = ("free_vibration", "initial", "accuracy", "overturning")
 
 
-MODULE = import_module("rockframe.studies.critical_scale")  # the package has the function there
+MODULE = import_module("rockframe.studies.critical_scale")  # `rf` has the function by that name
 
 
 @pytest.fixture(scope="module")
@@ -56,7 +56,7 @@ def found():
 
 
 def overturns(response):
-    """Return the verdict of a run, by what the run was asked for."""
+    """Return whether a run overturned, under its option `overturning`."""
     lies_flat = response.status.flag_meanings.split().index("toppled")
     going_on = '"overturning": "continue"' in response.attrs["run_json"]
     return response.status.item() == lies_flat if going_on else bool(response.overturned)
@@ -89,13 +89,13 @@ def test_every_tried_scale_is_reported(found):
         assert told.scale[-1].item() == 4.0
         for k in range(0, told.scale.size, 9):
             scale = told.scale[k].item()
-            with warnings.catch_warnings():  # next to a flip a run is doubted
+            with warnings.catch_warnings():  # runs near a flip warn
                 warnings.simplefilter("ignore", SolverWarning)
                 run = system.simulate(motion.scaled(scale), **of_run, outputs=None)
             assert told.outcome[k].item() == int(overturns(run)), (name, scale)
             assert told.peak_rotation[k].item() == run.peak_rotation.item()
             assert told.status[k].item() == run.status.item()
-        # flips are where neighbours differ
+        # flips lie between neighbours of different verdict
         assert np.count_nonzero(np.diff(told.outcome)) == told.flip.size
 
 
@@ -125,7 +125,7 @@ def test_critical_scale_search_starts_at_uplift_or_slip_scale(found):
     )
     lifted = rf.critical_scale(RIGID, SHAKING.with_vertical(SHAKING.scaled(0.5)), **SPARING)
     assert np.isnan([leaning.uplift_scale, lifted.uplift_scale]).all()
-    # or before it slides, by the friction of the ground less its slope
+    # or the scale of first slip, by the friction of the ground less its slope
     for friction, slope in ((0.1, 0.0), (9.0, 0.0), (0.1, 0.02), (0.1, 0.2)):
         ground = rf.RigidGround(friction=friction, kinetic_friction=min(friction, 1.0))
         with pytest.warns(ModelWarning) if slope > friction else nullcontext():

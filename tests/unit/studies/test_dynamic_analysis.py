@@ -103,7 +103,7 @@ def test_period_of_a_spectral_intensity_is_stored_and_labelled():
 def test_scan_starting_too_high_warns_of_lower_capacities(analysis):
     suite = motions()
     over = analysis.sel(limit_state="overturning").capacity_scale
-    least = float(np.sort(over)[1:3].mean())  # some motions overturn below it, some above
+    least = float(np.sort(over)[1:3].mean())  # some motions overturn below it and others above
     below = int(rf.sweep(SYSTEM, suite, scale=[least], **FAST).overturned.sum())
     assert 0 < below < 4
     scan = {"scale": [least, least + 1.0, least + 2.0], **FAST}
@@ -246,7 +246,7 @@ def test_capacities_do_not_depend_on_scan_step():
             least = float(one.capacity_scale.sel(motion=name))
             widest = float(one.capacity_resolution.sel(motion=name))
             below = truth.sel(motion=name, scale=slice(0.0, least * (1.0 - 1e-3))).squeeze()
-            # no range that is wider than the resolution falls below a capacity
+            # no range wider than the resolution lies below a capacity
             edges = np.flatnonzero(np.diff(np.r_[False, below.values, False].astype(int)))
             ranges = below.scale.values[edges[1::2] - 1] / below.scale.values[edges[::2]] - 1.0
             assert (ranges <= widest).all()

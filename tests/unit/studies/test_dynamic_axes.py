@@ -21,7 +21,7 @@ LINES = ("capacity_scale", "capacity_resolution", "flip_count")
 
 @pytest.fixture(scope="module")
 def wide():
-    """Analysis over two widths."""
+    """Return an analysis over two widths."""
     return rf.incremental_dynamic_analysis(
         SYSTEM, SUITE, width=["0.5 m", "0.7 m"], restitution=[0.75, 0.8], intensity="PGA", **HOW
     )
@@ -44,7 +44,7 @@ def test_each_structure_has_the_capacities_of_a_separate_analysis(wide):
         one, part = alone(f"{width} m", restitution), wide.sel(width=width, restitution=restitution)
         for name in LINES:
             np.testing.assert_array_equal(part[name], one[name])
-        # as many places for flips as the structure with the most of them needs
+        # the dimension of flips has the size of the structure with most flips
         below = part.scale_below.values[..., : one.sizes["flip"]]
         np.testing.assert_array_equal(below, one.scale_below)
         np.testing.assert_array_equal(
@@ -85,7 +85,7 @@ def test_subset_has_its_own_verdict(wide):
     assert one.rockframe.verdict == alone("0.5 m", 0.8).verdict
     some = wide.isel(width=0, motion=[0, 2])
     assert some.rockframe.verdict.startswith("Of 4 lines, of 2 structures by restitution under 2")
-    assert wide.isel(limit_state=[0]).rockframe.verdict  # which is not of overturning
+    assert wide.isel(limit_state=[0]).rockframe.verdict  # of another limit state than overturning
     assert wide.isel(motion=0).rockframe.verdict.startswith("Of 12 of the 36 cases")
 
 

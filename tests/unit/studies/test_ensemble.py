@@ -38,7 +38,7 @@ def test_sweep_over_structures_needs_pooling():
     assert every.member_count.item() == 20
     assert "no bounds, for several members are of one motion" in every.verdict
     bounds = [name for name in every if str(name).endswith("_bound")]
-    # that the whole ensemble is at most all of it needs no confidence
+    # no confidence is needed if a fractile includes the whole ensemble
     assert all(every[name][:-1].isnull().all() for name in bounds)
     table = rf.sweep(SYSTEM, motions(), cases={"width": ["0.4 m", "0.5 m"]}, **HOW)
     with pytest.raises(ComponentError, match="over case"):
@@ -113,13 +113,13 @@ def test_a_spectrum_counts_runs_without_a_verdict(monkeypatch):
 
 @pytest.mark.parametrize("count", [44, 90])
 def test_first_order_index_is_the_adjusted_correlation_ratio(count):
-    """One less the variance within groups over that of all, each by its degrees of freedom."""
+    """One minus the variance within groups over the total, each by its degrees of freedom."""
     rng = np.random.default_rng(count)
     values = rng.normal(size=count)
     verdict = (values + rng.normal(size=count) > 0.0).astype(float)
     groups = count // 20
     parts = np.array_split(verdict[np.argsort(values)], groups)
-    if count % groups:  # the first groups of the function are those that are larger
+    if count % groups:  # the function makes its first groups the larger ones
         place = np.arange(count) * groups // count
         parts = [verdict[np.argsort(values)][place == k] for k in range(groups)]
     within = sum(((part - part.mean()) ** 2).sum() for part in parts) / (count - groups)

@@ -57,7 +57,7 @@ def test_overturning_island_is_found_when_peaks_hint_at_it():
 
 
 def test_sentence_states_the_largest_gap_between_runs():
-    """An island that nothing tells of is missed, and the sentence promises nothing else."""
+    """An island without any sign in the peaks is missed, and the sentence does not exclude it."""
     look, _ = runs_of(lambda scale: 1.5 if 2.001 < scale < 2.099 else 0.05)
     found = scan_scales(look, ROW, max_runs=100, width=1e-4)
     assert found.flips() == []
@@ -99,7 +99,7 @@ def test_sentence_states_resolved_range_when_runs_are_exhausted():
 
 @pytest.mark.parametrize("resolution", [0.05, 0.02, pytest.param(0.005, marks=pytest.mark.long)])
 def test_no_range_wider_than_resolution_is_missed_in_resolved_range(resolution):
-    """Whatever peaks tell: here nothing."""
+    """Also where peaks are constant and indicate no island."""
     start = 1.3
     for length in (1.05, 2.0):
         wide = start * (1.0 + length * resolution)
@@ -110,7 +110,7 @@ def test_no_range_wider_than_resolution_is_missed_in_resolved_range(resolution):
         few = scan_scales(look, [0.0, 1.0, 2.0], max_runs=20, width=1e-4, resolution=resolution)
         assert few.resolved_up_to < start
 
-    # a base that does not lift holds at any lesser scale
+    # a base that does not lift does not lift at any smaller scale either
     def still(scale):
         return replace(look(scale), lifted=scale > 1.0)
 
@@ -199,7 +199,7 @@ def test_interrupted_scan_retains_completed_runs():
         assert not found.completed
         assert sorted(found.runs) == sorted(asked[:count])
         assert "interrupted" in flips_sentence(found, width=1e-4)
-        # up to there every flip that the whole analysis found lies in a bracket
+        # every flip of the complete analysis up to that scale lies in a bracket
         for flip in whole.flips():
             around = [one for one in found.flips() if one.below <= flip.below < one.above]
             assert flip.above > found.resolved_up_to or around

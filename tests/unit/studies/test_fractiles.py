@@ -12,7 +12,7 @@ SYSTEM = rf.System(rf.Block(width="0.5 m", height="2 m", mass="400 kg"))
 
 
 def made(rows, fell, names="abcdefghijk"):
-    """Runs whose peaks and verdicts are those of the rows, one for each motion."""
+    """Return runs with given peaks and verdicts, a row for each motion."""
     pulse = rf.GroundMotion.sine_pulse("1 m/s^2", "1 Hz")
     motions = {name: pulse.scaled(1.0 + 0.01 * k) for k, name in enumerate(names[: len(rows)])}
     runs = rf.sweep(SYSTEM, motions, scale=SCALES, accuracy="fast", progress=False)
@@ -50,11 +50,11 @@ def test_fractiles_of_three_motions_match_hand_calculation():
 
 
 def test_response_and_intensity_fractiles_of_rising_curves_are_inverse():
-    """Of n curves that rise the k-th response at an intensity is the (n - k + 1)-th intensity."""
+    """For n rising curves, the k-th response at an intensity is the (n - k + 1)-th intensity."""
     rng = np.random.default_rng(4)
     rows = np.cumsum(rng.uniform(0.02, 0.2, size=(11, len(SCALES))), axis=1)
     runs = made(rows, np.zeros(rows.shape, dtype=bool))
-    shares = [0.16, 0.5, 0.84]  # 11 q is no whole number
+    shares = [0.16, 0.5, 0.84]  # 11 q is not an integer
     curves = rf.fractile_curves(runs, fractiles=shares)
     for share, rest in zip(shares, reversed(shares), strict=True):
         response = curves.response_fractile.sel(quantile=share).values
@@ -122,7 +122,7 @@ def test_fractile_curves_of_a_varied_system_drop_the_stored_system():
 
 
 def test_verdict_states_the_capacity_rather_than_the_next_grid_point():
-    """The least intensity at which half of the motions overturn is that of a run."""
+    """The least intensity at which half of the motions overturn is the intensity of a run."""
     rows = [[0.1, 0.2, 0.3, 1.0, 1.0], [0.2, 0.3, 0.6, 1.0, 1.0], [0.1, 0.1, 0.1, 0.1, 0.1]]
     fell = np.array([[0, 0, 0, 1, 1], [0, 0, 0, 1, 1], [0, 0, 0, 0, 0]], dtype=bool)
     runs = made(rows, fell).assign_coords(scale=[0.5, 1.0, 1.5, 1.9991, 2.5])
@@ -135,7 +135,7 @@ def test_verdict_states_the_capacity_rather_than_the_next_grid_point():
 
 
 def test_overturning_between_curve_points_is_counted():
-    """One that is narrower than the distance of the points at which curves are given."""
+    """The gap is narrower than the spacing of the points of the curves."""
     runs = rf.incremental_dynamic_analysis(
         SYSTEM, rf.GroundMotion.sine_pulse("4 m/s^2", "1 Hz"), scale=[0.5, 1, 1.5, 2, 50],
         free_vibration="5 s", progress=False,

@@ -46,7 +46,7 @@ def test_fit_reproduces_published_baker_example():
 
 
 def test_profile_intervals_match_brute_force():
-    """For each value of a parameter the other one is chosen anew."""
+    """The other parameter is optimised anew for each value of one parameter."""
     found = of_baker(confidence=0.9)
     logs, over = np.log(LEVELS), np.array(EXCEEDED)
 
@@ -89,7 +89,7 @@ def test_clopper_pearson_bounds_match_scipy():
 
 
 def test_bracketed_capacities_are_fitted_as_censored_lognormals():
-    """Narrow brackets give the mean and the deviation of logarithms; open ends are censored."""
+    """Narrow brackets give mean and standard deviation of logarithms; open ends are censored."""
     rng = np.random.default_rng(3)
     logs = rng.normal(0.4, 0.3, 60)
     every, none = np.ones(60, dtype=bool), np.zeros(60, dtype=bool)
@@ -154,7 +154,7 @@ def test_likelihood_is_accurate_in_the_tails():
 
 @pytest.mark.wide
 def test_sandwich_bands_have_nominal_coverage():
-    """Clusters of dependent trials: bands that take them for independent are too narrow."""
+    """Bands that assume independence are too narrow for clusters of dependent trials."""
     rng = np.random.default_rng(11)
     levels = np.log(np.geomspace(0.3, 3.0, 8))
     held = {Bands.PROFILE: 0, Bands.SANDWICH: 0}
@@ -204,13 +204,13 @@ def test_counts_without_a_fit_have_a_status():
     gap = found.separation_lower_intensity.item(), found.separation_upper_intensity.item()
     assert gap == pytest.approx((2.0, 4.0))
     assert set(found.exceedance_probability.values.tolist()) == {0.0, 1.0}
-    # five at each end: with more than 0.68 none of them exceeds at 2, or all do at 4
+    # five at each end: with probability above 0.68 none exceeds at 2, or all do at 4
     assert found.median_intensity_lower_bound.item() == pytest.approx(2.0)
     assert found.median_intensity_upper_bound.item() == pytest.approx(4.0)
     few = of_counts(([1.0, 2.0, 4.0], "m/s^2"), [0, 0, 1], 1)
     bounds = [few[name] for name in few if str(name).endswith("_bound")]
     assert all(np.isnan(one).all() for one in bounds if not one.name.startswith("stripe"))
-    for rounding in (0.0, 1e-15):  # of motions that were scaled to the intensity
+    for rounding in (0.0, 1e-15):  # as for motions scaled to the intensity
         one = of_counts(([2.0, 2.0 + rounding, 2.0], "m/s^2"), [1, 2, 3], 5)
         assert one.fragility_status.item() == FragilityStatus.ONE_INTENSITY
     reversed_ = of_counts(([1.0, 2.0], "m/s^2"), [5, 0], 5)
@@ -218,7 +218,7 @@ def test_counts_without_a_fit_have_a_status():
 
 
 def test_equal_shares_at_all_intensities_do_not_rise():
-    """The likelihood is greatest at a slope of zero, of which rounding leaves some 1e-15."""
+    """The likelihood is greatest at a slope of zero, up to rounding of about 1e-15."""
     for over, trials in ((7, 16), (8, 16), (1, 3)):
         for levels in ([2.151, 2.456], [0.1, 0.3, 7.0]):
             found = of_counts((levels, "m/s^2"), [over] * len(levels), trials)
@@ -413,7 +413,7 @@ def test_pelicun_samples_damage_at_the_exported_probability(tmp_path):
     heads = [(*name.split("-", 1), "")[:2] for name in library.columns]
     library.columns = pd.MultiIndex.from_tuples(heads)
     size, demand = 4000, 0.8 * found.median_intensity.item() / GRAVITY
-    # the block is on the first axis of a plan; along the second hardly anything moves
+    # the block rocks along the first axis of a plan; along the second motion is negligible
     axes = [("PGA", "0", "1"), ("PGA", "0", "2")]
     columns = pd.MultiIndex.from_tuples(axes, names=["type", "loc", "dir"])
     units = pd.DataFrame([["g", "g"]], columns=columns, index=["Units"])

@@ -17,14 +17,14 @@ MEASURE = ("peak_ground_acceleration", {"units": "m s^-2"})
 
 
 def runs_of(rng, motions, dispersion):
-    """Every motion at all scales, a lognormal capacity of median 1 for each."""
+    """Return runs of motions at all scales, with lognormal capacities of median 1."""
     logs = rng.normal(np.log(0.5), 0.4, motions)[:, None] + np.log(SCALES)
     over = logs > rng.normal(0.0, dispersion, motions)[:, None]
     return logs.ravel(), over.ravel().astype(float), np.repeat(np.arange(motions), len(SCALES))
 
 
 def by_hand(logs, over, cluster):
-    """The sandwich of a probit regression, from its definition."""
+    """Return fit and sandwich covariance of a probit regression, from the definition."""
     rows = np.column_stack([np.ones(len(logs)), logs])
 
     def loss(at):
@@ -82,7 +82,7 @@ def test_the_jackknife_leaves_out_each_motion_in_turn():
 
 
 def test_jackknife_bounds_follow_their_definition():
-    """Student's t of the motions but one, about a dispersion that is not too small on average."""
+    """Student's t with one degree of freedom less than motions, about an unbiased dispersion."""
     motions = 6
     logs, over, cluster = runs_of(np.random.default_rng(4), motions, 0.5)
     trials = Trials.from_verdicts(logs[:, None], over, np.ones(len(over)), cluster)
@@ -98,7 +98,7 @@ def test_jackknife_bounds_follow_their_definition():
     every = estimates(cluster >= 0)
     rest = np.array([estimates(cluster != one) for one in range(motions)])
     errors = np.sqrt((motions - 1.0) / motions * ((rest - every) ** 2).sum(axis=0))
-    # what the logarithm of the deviation of as many known capacities lacks
+    # the bias of the logarithm of the standard deviation of as many known capacities
     lacking = -0.5 * stats.chi2(motions - 1).expect(lambda q: np.log(q / motions))
     reach = stats.t.ppf(0.95, motions - 1) * errors
     for name, middle, error in zip(
@@ -111,7 +111,7 @@ def test_jackknife_bounds_follow_their_definition():
 
 @pytest.mark.long
 def test_bounds_by_jackknife_hold_with_few_motions():
-    """Of five motions; the samples of them that an intensity separates have none."""
+    """With five motions; samples that an intensity separates have no bounds."""
     rng, samples = np.random.default_rng(9), []
     for _ in range(200):
         logs, over, cluster = runs_of(rng, 5, 0.4)
@@ -124,7 +124,7 @@ def test_bounds_by_jackknife_hold_with_few_motions():
 
 
 def test_separated_counts_have_the_bounds_of_their_likelihood():
-    """Where 3 of 5 exceed at one intensity, none below and all above, that is the median."""
+    """If 3 of 5 exceed at one intensity, none below and all above, that intensity is the median."""
     found = rf.fragility(
         {"intensity": ([1.0, 2.0, 3.0, 4.0], "m/s^2"), "exceeded": [0, 0, 3, 5], "trials": 5}
     )
@@ -147,7 +147,7 @@ def test_separated_counts_have_the_bounds_of_their_likelihood():
 
 
 def test_separated_single_runs_have_bounds_with_coverage():
-    """One sample in three of ten runs is separated, and has bounds like the others."""
+    """One in three samples of ten runs is separated, and has bounds like the others."""
     rng, samples, runs = np.random.default_rng(5), [], 10
     for _ in range(150):
         logs = 0.6 * rng.standard_normal(runs)
@@ -167,7 +167,7 @@ def test_separated_single_runs_have_bounds_with_coverage():
 
 
 def test_bracketed_capacities_have_likelihood_bounds():
-    """Rays towards slopes below zero, where brackets have no likelihood, end before these."""
+    """Rays towards negative slopes, where brackets have no likelihood, end before them."""
     ends = np.log([[0.80, 0.75, 1.11, 0.54, 0.85], [1.07, 1.00, 1.67, 1.08, 1.28]])
     lower, upper = ends[:, :, None]
     known = np.ones(5, dtype=bool)
@@ -189,7 +189,7 @@ def test_bracketed_capacities_have_likelihood_bounds():
 
 
 def held(samples, dispersion, bands):
-    """Shares of samples in which the bounds hold the median, 1, and the dispersion."""
+    """Return the shares of samples whose bounds contain the median, 1, and the dispersion."""
     found = fragility_dataset(
         [StructureTrials(trials, None, 0, independent) for trials, independent in samples],
         {"limit_state": len(samples)}, [MEASURE], BoundSettings(bands, 0.95), {"trials": "runs"},
@@ -219,7 +219,7 @@ def test_sandwich_bounds_have_documented_coverage(motions):
 
 @pytest.mark.parametrize("count", [5, 10])
 def test_profile_bounds_have_documented_coverage(count):
-    """Of known capacities that follows from Student's and from the chi-squared distribution."""
+    """For known capacities, coverage follows from Student's t and the chi-squared distribution."""
     said = COVERAGE[Bands.PROFILE][count]
     drop = stats.chi2.ppf(0.95, 1)
     # the likelihood ratio of a mean is n ln(1 + t^2 / (n - 1))

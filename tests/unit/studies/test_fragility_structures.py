@@ -24,7 +24,7 @@ def runs():
 
 
 def fail(runs, **place):
-    """Make runs of a sweep ones that have no result."""
+    """Return a sweep in which the runs at one place have no result."""
     runs.status[place] = RunStatus.REFUSED
     runs.peak_relative_rotation[place] = np.nan
 
@@ -58,10 +58,10 @@ def test_structures_are_pooled_on_request(runs):
     assert found.attrs["pooled"] == "width"
     assert "(pooled over width)" in found.verdict
     assert found.trial_count.item() == runs.status.size
-    # the differences of the structures are in its dispersion
+    # its dispersion includes the differences of the structures
     alone = rf.fragility(runs, "PGV", limits=())
     assert found.dispersion.item() > 1.3 * alone.dispersion.max().item()
-    # a motion is run once for each structure, and once more for each that is pooled
+    # each structure has one run per motion; pooled ones have several, which are dependent
     once = runs.isel(scale=[3])
     assert rf.fragility(once, "PGV").attrs["bands"] == "profile"
     assert rf.fragility(once, "PGV", pooled="width").attrs["bands"] == "jackknife"
@@ -149,7 +149,7 @@ def test_concatenated_runs_and_sweeps_are_refused(runs):
             rf.fragility(one, twice)
     both = rf.sweep(SYSTEM, {**motions(0), **motions(10)}, scale=SCALES[:3], **HOW)
     assert_same_fit(rf.fragility(rf.concat([one, other], "motion")), rf.fragility(both))
-    # what an axis goes on with is one sweep, and numbers of one's own need no motions
+    # parts joined along an axis of a sweep are one sweep; user-defined measures need no motions
     split = [runs.isel(scale=slice(0, 3)), runs.isel(scale=slice(3, None))]
     assert_same_fit(rf.fragility(xr.concat(split, "scale")), rf.fragility(runs))
     own = rf.fragility(xr.concat([one, one], "suite"), one.scale, limits=())
@@ -169,7 +169,7 @@ def test_runs_without_a_verdict_are_counted(runs):
 
 @pytest.mark.long
 def test_unknown_capacities_are_omitted():
-    """A motion whose runs failed is none that the block withstood."""
+    """A motion whose runs failed is not counted as withstood."""
     analysis = rf.incremental_dynamic_analysis(
         SYSTEM, motions(count=12), scale=[1.0, 3.0, 6.0, 12.0], **HOW
     )
@@ -183,7 +183,7 @@ def test_unknown_capacities_are_omitted():
     assert found.left_out_count.item() == 1
     assert found.trial_count.item() == 11
     assert "1 of 12 capacities are left out" in found.verdict
-    # of motion 1 it is known that it withstood the least scale, and no more
+    # for motion 1 only the least scale is known to be withstood
     without = rf.fragility(lacking.isel(motion=slice(2, None)), trials="capacities")
     assert found.median_intensity.item() == pytest.approx(without.median_intensity.item(), rel=0.02)
     assert all_known.left_out_count.item() == 0
@@ -223,7 +223,7 @@ def test_figures_distinguish_structures(runs):
 
 
 def test_an_axis_with_the_name_of_the_measure_is_refused() -> None:
-    """It is an argument of the function, and no peak of the motions."""
+    """The intensity is an argument of the scene function, not a peak of the motions."""
     system = rf.System(rf.Block(width="0.5 m", height="2 m", mass="400 kg"))
     pulse = rf.GroundMotion.sine_pulse("3 m/s^2", "1 Hz")
     runs = rf.sweep(
@@ -235,7 +235,7 @@ def test_an_axis_with_the_name_of_the_measure_is_refused() -> None:
 
 
 def test_measure_named_like_an_axis_does_not_replace_the_axis(runs) -> None:
-    """Runs of all widths counted as those of one structure."""
+    """Runs of all widths were once counted as those of one structure."""
     own = xr.DataArray(np.arange(1.0, 7.0), dims="motion", name="width", attrs={"units": "m"})
     with pytest.raises(ComponentError, match="differ along width, which is also the name"):
         rf.fragility(runs, own)
@@ -245,6 +245,6 @@ def test_measure_named_like_an_axis_does_not_replace_the_axis(runs) -> None:
 
 
 def test_means_of_runs_are_refused(runs) -> None:
-    """The mean of the statuses of a run that stands and one that lies flat is a third one's."""
+    """The mean of two status numbers is the number of a third status."""
     with xr.set_options(keep_attrs=True), pytest.raises(SchemaError, match="means of runs"):
         rf.fragility(runs.mean("width"), "PGA")

@@ -17,7 +17,7 @@ SLIDES = "the block would slide from"
 
 
 def texts_of(runs):
-    """Return what is said of each case."""
+    """Return the message of each case."""
     return runs.message.to_numpy().squeeze()
 
 
@@ -47,7 +47,7 @@ def test_friction_warning_does_not_depend_on_histories():
 def test_sweep_cases_report_the_friction_of_single_runs(base):
     system = rf.System(BLOCK, base, sliding="checked")
     frictions = [0.1, 0.5, 10.0]
-    most = f"({SLIDES}|the run ends while)"  # on soil more cases still swing than would slide
+    most = f"({SLIDES}|the run ends while)"  # on soil more cases end in motion than would slide
     with pytest.warns(ModelWarning, match=f"cases have a result to be careful with.*{most}"):
         runs = rf.sweep(system, PULSE, friction=frictions, scale=[0.5, 1.0], accuracy="standard")
     for (scale, friction), text in zip(
@@ -144,7 +144,7 @@ def test_analyses_warn_of_sliding():
 
 
 def test_analyses_report_slip_over_tried_scales():
-    """A block that slides instead of rocking stands at any scale; how far it goes is said."""
+    """A block that slides instead of rocking stands at any scale; its slip is reported."""
     low = rf.Block(width="1 m", height="2 m", mass="1 t")
     slides = rf.System(low, rf.RigidGround(friction=0.2))
     pulse = rf.GroundMotion.sine_pulse("2.5 m/s^2", "1 Hz")

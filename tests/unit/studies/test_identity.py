@@ -128,14 +128,14 @@ def arguments_of(name):
 
 
 def test_every_study_argument_is_covered_by_these_tests():
-    # what others know are the same numbers, tests/unit/studies/test_known_cases.py
+    # tests/unit/studies/test_known_cases.py covers arguments that keep the numbers
     assert set(SWEEP_CHANGES) | set(KEPT) | {"known"} == arguments_of("sweep")
     for name, (_, changes) in ANALYSES.items():
         assert set(changes) | set(KEPT) == arguments_of(name), name
 
 
 def two(base, name, change):
-    """Return what is asked for before and after an argument has been changed."""
+    """Return the arguments of an analysis before and after a change."""
     before, after = change if isinstance(change, tuple) and len(change) == 2 and all(
         isinstance(one, dict) for one in change
     ) else ({}, {name: change})  # fmt: skip
@@ -164,7 +164,7 @@ def test_execution_options_do_not_change_the_study(tmp_path):
 
 @pytest.fixture(scope="module")
 def begun(tmp_path_factory):
-    """Return a function that makes the store of an analysis, each but once."""
+    """Return a function that creates the store of an analysis, each only once."""
     made = {}
 
     def store(name, asked, into):
@@ -180,7 +180,7 @@ def begun(tmp_path_factory):
 @pytest.mark.parametrize(
     ("analysis", "name"),
     [
-        # what all analyses hand on to runs is read in one place
+        # arguments that all analyses pass to runs are read in one place
         pytest.param(one, name, marks=[pytest.mark.long] * (name in RUN and one not in SEEN))
         for one, (_, changes) in ANALYSES.items()
         for name in changes
@@ -198,7 +198,7 @@ def test_store_never_returns_results_of_other_arguments(analysis, name, begun, t
         alike(kept, getattr(rf, analysis)(**after))
 
 
-# what is told ----------------------------------------------------------------------------------
+# descriptions ----------------------------------------------------------------------------------
 
 
 @dataclass(frozen=True)
@@ -245,9 +245,8 @@ def test_description_of_a_study_covers_nested_fields():
     assert {"Study", "SystemScene", "Assembly", "Parts", "Options", "Grid", "RunRequest",
             "Accuracy", "Histories"} <= set(seen)  # fmt: skip
     assert not [name for name in seen if name.startswith("_")]
-    # a job has nothing that its study does not tell: two are of the grid, and in lanes, for which
-    # it waits as long as they save, cases have the same numbers to the last bit; what restrainers
-    # are called follows from the scenes
+    # further fields of a job do not change numbers: two follow from the grid, names of restrainers
+    # from the scenes; with lanes or without, cases are equal bit for bit
     derived = {"axes", "motion_of_case", "compile_timeout", "restrainers"}
     told_of = {one.name for one in fields(Study)} | derived
     assert {one.name for one in fields(SweepJob)} <= told_of

@@ -1,6 +1,6 @@
 """Cases that are assembled together equal cases assembled one by one, bit for bit.
 
-Random studies of each kind of scene, with every axis that its numbers follow from.
+Random studies of each kind of scene, with every axis that its numbers depend on.
 """
 
 import numpy as np
@@ -26,7 +26,7 @@ COMPILED_ANYWAY = (
     "inertia on pads",
     "rigid ground",
     "restitution",
-)  # by other tests, in lanes
+)  # by other tests in lanes
 TWICE = "cascade", "fast"
 BLOCK = rf.Block(width="2.4 m", height="9.7 m", mass="50 t")
 PADS = rf.TwoSpringSupport(frequency_ratio=20, damping_ratio=0.10)
@@ -86,7 +86,7 @@ def table(spreads, rng, count=COUNT):
 
 
 def both(monkeypatch, scene, cases, motion, **options):
-    """Run a chunk together, and again with every scene on its own; tell how many ran together."""
+    """Run a chunk assembled together and case by case; return also how many ran together."""
     monkeypatch.setattr(study, "MIN_CASES_IN_LANES", 1)
     monkeypatch.setattr(study, "COMPILING_SHARE", float("inf"))
     planned = plan_study(scene, motion, {}, cases, **options)
@@ -117,7 +117,7 @@ def assert_same(together, alone):
 
 @pytest.mark.parametrize(
     ("name", "accuracy"),
-    # fixed steps of two bases in lanes are tested beside single runs
+    # fixed steps of two bases in lanes are compared with single runs elsewhere
     [
         pytest.param(name, by, marks=[pytest.mark.long] * (name not in COMPILED_ANYWAY))
         for name in STUDIES
@@ -175,7 +175,7 @@ def test_invalid_cases_have_the_same_messages_in_joint_assembly(monkeypatch):
     cases = table({**SIZE, **SCALE, "restitution": (0.5, 1.0, None)}, rng)
     heights = cases["Block.height [m]"]
     heights[::7] = 0.5  # too squat to rock
-    heights[3] = 1e-200  # an inertia that vanishes
+    heights[3] = 1e-200  # a vanishing inertia
     together, alone, _ = both(monkeypatch, rf.System(BLOCK, PADS), cases, record(), accuracy="fast")
     assert_same(together, alone)
     said = {together.texts[k] for k in together.message}

@@ -33,7 +33,7 @@ HEIGHTS = ["2 m", "0.2 m", "1 m"]  # the second cannot rock
 
 @pytest.fixture
 def ran(monkeypatch):
-    """Count the cases that are run."""
+    """Return a list that collects the cases that are run."""
     count, plain = [], Study.job
 
     def job(self, cases):
@@ -63,7 +63,7 @@ def test_a_study_is_extended_by_motions_and_values(tmp_path, ran, chunk):
     assert len(ran) == len(set(ran)) == 60 - 2 * 2 * 3
     ran.clear()
     alike(swept(store=tmp_path / "more", known=str(tmp_path / "first")), whole)
-    alike(swept(store=tmp_path / "more"), whole)  # it needs the other no longer
+    alike(swept(store=tmp_path / "more"), whole)  # independent of the first study
     assert not ran
 
 
@@ -75,7 +75,7 @@ def test_studies_are_combined(tmp_path, ran):
     parts = [tmp_path / "others", tmp_path / "some"]
     alike(swept(store=tmp_path / "all", known=parts), whole)
     assert not ran
-    few = swept(("9",), [2.0])  # too few to be run side by side, as those were that are known
+    few = swept(("9",), [2.0])  # too few for lanes, in which the stored ones were run
     alike(swept(("9",), [2.0], store=tmp_path / "one", known=parts), few, apart=["driver"])
 
 

@@ -36,7 +36,7 @@ TABLE = pd.DataFrame({"motion": ["a", "10", "weak", "9", "a"], "scale": [1.0, 1.
 
 
 def on_a_grid(**run):
-    # the flattest cannot rock, and has no result
+    # the lowest block cannot rock, and has no result
     return rf.sweep(
         SYSTEM, MOTIONS, height=["2 m", "0.2 m", "1 m"], scale=[1.0, 0.5, 1.5, 0.7], chunk=7, **run
     )
@@ -72,7 +72,7 @@ def dask_is_there(request, monkeypatch):
 
 
 def agrees(lazy, whole):
-    """Whether both have the same, but that one has floats where the other need not."""
+    """Compare both, except that missing values make floats of other numbers."""
     assert set(lazy.variables) == set(whole.variables)
     for name, expected in whole.variables.items():
         found = lazy.variables[name]
@@ -100,9 +100,9 @@ def test_lazily_opened_study_equals_the_stored_one(run, tmp_path, dask_is_there,
     assert lazy.attrs == said
     counted.clear()
     assert lazy.rockframe.verdict == whole.rockframe.verdict == whole.verdict
-    assert len(counted) > 1 or run is screened  # in parts of chunks
+    assert len(counted) > 1 or run is screened  # read in parts
     rng = np.random.default_rng(1)
-    for _ in range(20):  # whatever is picked, along one dimension or along all
+    for _ in range(20):  # any selection, along one dimension or along all
         key = {
             dim: [rng.integers(-size, size).item(), rng.integers(-size, size, 3),
                   slice(*sorted(rng.integers(0, size + 1, 2).tolist())), slice(None, None, -1)]
@@ -191,7 +191,7 @@ def test_with_dask_statistics_stream(tmp_path, monkeypatch):
     assert found == np.abs(whole.rotation).max().item()
     assert taken < 0.5 * size
     with dask.config.set(scheduler="synchronous"):
-        # of texts that are read as they are used xarray would have to know the longest
+        # xarray would need the longest of all lazily read texts
         numbers = lazy.drop_vars(["rotation", "message"])
         numbers.to_netcdf(tmp_path / "whole.nc")
     with xr.open_dataset(tmp_path / "whole.nc") as read:
@@ -228,7 +228,7 @@ def test_study_larger_than_memory_is_read_from_its_store(tmp_path, monkeypatch):
     again = rf.sweep(
         SYSTEM, MOTIONS["weak"], scale=scales, free_vibration="5 s", store=tmp_path / "study"
     )
-    assert as_bytes(again) == as_bytes(whole)  # the same study, whatever memory there is
+    assert as_bytes(again) == as_bytes(whole)  # the same study, independent of available memory
 
 
 def test_an_interrupted_study_that_does_not_fit_is_not_read(tmp_path, monkeypatch):

@@ -46,7 +46,7 @@ def test_limit_states_retain_their_order(runs):
 
 @pytest.mark.long
 def test_dynamic_analysis_brackets_a_slip_limit_state():
-    """A slip of so many metres is exceeded between two runs that tell it."""
+    """A limit of slip is first exceeded between two runs."""
     slides = rf.System(BLOCK, rf.RigidGround(friction=0.1))
     found = rf.incremental_dynamic_analysis(
         slides, SUITE[:2], scale=[1.0, 2.0, 4.0], limits=[("peak_slip", "1 cm")], **HOW
@@ -92,7 +92,7 @@ def test_cases_without_a_result_are_omitted(runs):
     assert isinstance(found, xr.Dataset)
 
 
-# from the runs to the report -------------------------------------------------------------------
+# runs, fragilities and reports -------------------------------------------------------------------
 
 ON_SOIL = rf.System(
     rf.Block(width="1 m", height="4 m", mass="10 t"),
@@ -172,7 +172,7 @@ def test_a_dynamic_analysis_narrows_limit_states_at_points():
 
 
 def test_block_returning_from_beyond_overturning_exceeds_reached_limits():
-    """It has not overturned; but peaks that are told up to the angle say nothing of the rest."""
+    """The run has not overturned, but its peaks are known only up to the overturning angle."""
     walled = rf.System(BLOCK, rf.RearWall(side="left", restitution=-0.3))
     pulse = rf.GroundMotion.sine_pulse("-6 m/s^2", "1 Hz")
     found = rf.sweep(
@@ -197,7 +197,7 @@ def test_block_returning_from_beyond_overturning_exceeds_reached_limits():
 
 
 def test_converted_responses_are_read_in_their_unit():
-    """Such as for a figure: limit states, levels and measures go by the unit that they have."""
+    """As for a figure: limit states, levels and measures are read in the unit that they have."""
     motions = {f"seed {k}": rf.GroundMotion.stochastic(6.8, "8 km", seed=k) for k in range(4)}
     block = rf.Block(width="0.6 m", height="2 m", mass="400 kg")
     runs = rf.sweep(rf.System(block), motions, scale=[2, 4, 6], **HOW)
@@ -222,7 +222,7 @@ def test_converted_responses_are_read_in_their_unit():
 
 @pytest.mark.long
 def test_converted_scales_give_the_same_capacities():
-    """Those of a dynamic analysis are multiples of the motion, whatever its scales are in."""
+    """Scales of a dynamic analysis are multiples of the motion, whatever their unit."""
     motions = {f"seed {k}": rf.GroundMotion.stochastic(6.8, "8 km", seed=k) for k in range(4)}
     block = rf.Block(width="0.6 m", height="2 m", mass="400 kg")
     runs = rf.incremental_dynamic_analysis(rf.System(block), motions, scale=[2, 4, 6, 8], **HOW)

@@ -19,7 +19,7 @@ FAST = {"free_vibration": "4 s", "accuracy": "fast"}
 
 @pytest.fixture
 def bars(monkeypatch):
-    """All bars that are made, with what each has shown."""
+    """Return all progress bars, each with what it has shown."""
     made = []
 
     class Bar(tqdm_auto.tqdm):
@@ -113,7 +113,7 @@ def test_a_bar_is_closed_when_something_fails(bars):
 
     with pytest.raises(RuntimeError), execution.progress_bar(True, owner="some") as bar:
         stops(bar.expect(3))
-    assert bars[0].disable  # as tqdm leaves a bar that is closed
+    assert bars[0].disable  # as tqdm marks a closed bar
 
 
 def test_notebook_widget_total_grows(monkeypatch):

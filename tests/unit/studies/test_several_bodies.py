@@ -23,7 +23,7 @@ def tie(name: str, side: float, strength: str = "8 kN") -> rf.Restrainer:
 
 
 def column(drums: int) -> rf.System:
-    """Make a column of drums on one another."""
+    """Make a column of stacked drums."""
     drum = rf.Block(width="1 m", height="1.5 m", mass="2 t")
     return rf.System(rf.Stack(*[drum] * drums, interfaces=[ROUGH] * (drums - 1)), ROUGH)
 
@@ -33,7 +33,7 @@ TIED = rf.System(STATUE, PADS, tie("west", -1), tie("east", 1, "3 kN"))
 
 @pytest.fixture(scope="module")
 def broken():
-    """Sweep over what one of two ties stands; enough cases for lanes."""
+    """Sweep over the strength of one of two ties, with enough cases for lanes."""
     axes = {"west.strength": (np.linspace(1.0, 30.0, 12), "kN")}
     return rf.sweep(TIED, PULSE, axes=axes, scale=[0.3, 0.6, 1.0], **FOUR)
 
@@ -62,7 +62,7 @@ def frame() -> rf.System:
 
 
 def stacked() -> rf.System:
-    """Make a statue on a plinth, rigid on rigid ground, that is tied."""
+    """Make a tied statue on a plinth on rigid ground."""
     plinth = rf.Block(width="0.9 m", height="0.8 m", mass="1500 kg")
     statue = rf.Block(width="0.5 m", height="1.5 m", mass="600 kg")
     wire = rf.Restrainer(
@@ -75,9 +75,9 @@ def stacked() -> rf.System:
 @pytest.mark.parametrize("scene", [frame, pytest.param(stacked, marks=pytest.mark.long)])
 def test_broken_restrainer_count_equals_break_events(scene):
     motion = rf.GroundMotion.type_a_pulse("1.2 m/s", "1.6 s") if scene is frame else PULSE
-    scales = [0.3, 1.3333]  # PULSE is then one of 4 m/s^2
+    scales = [0.3, 1.3333]  # with a peak of 4 m/s^2
     asked = {"accuracy": "fast", "overturning": "continue", "free_vibration": "0.1 s"}
-    with plainly():  # nothing else compiles the equations of rigid bodies that are tied
+    with plainly():  # no other test compiles the equations of tied rigid bodies
         runs = rf.sweep(scene(), motion, scale=scales, **asked)
         alone = [scene().simulate(motion.scaled(scale), **asked) for scale in scales]
     counts = runs.broken_restrainer_count.values.ravel().tolist()
@@ -122,7 +122,7 @@ def test_restrainer_names_of_a_function_are_used_if_all_cases_agree():
 
 @pytest.mark.wide
 def test_case_with_other_restrainer_names_warns():
-    def scene(number: int) -> rf.System:  # of so many it is not looked at all beforehand
+    def scene(number: int) -> rf.System:  # too many to be examined in advance
         names = ("east", "west") if number == 5 else ("west", "east")
         return rf.System(STATUE, PADS, *(tie(name, -1) for name in names))
 

@@ -1,6 +1,6 @@
 """Analyses of a stored study equal those in memory, whatever its motions are called.
 
-Names are in no order, motions of different lengths, so that neither may stand for the other.
+Names are unsorted and motions differ in length, so that mistaken motions change results.
 """
 
 import inspect

@@ -65,11 +65,11 @@ def test_levels_and_samples_are_consistent(found):
     weight = float(found.sample_weight.where(falls, 0.0).sum())
     assert weight == pytest.approx(product, rel=1e-12)
     assert float(found.sample_weight.sum()) == pytest.approx(1.0, rel=1e-12)
-    # a level's samples have all reached the threshold before, and its weights stand below its own
+    # all samples of a level have reached the threshold before, and its weights count below its own
     for level in found.sampling_level.values[1:]:
         inside = found.demand.values[found.sample_level.values == level]
         assert inside.min() >= found.demand_threshold.values[level - 2]
-    # runs are those of the first sample, and a candidate for each sample that begins no chain
+    # the first sample, and a candidate for each sample that does not begin a chain
     counts = np.bincount(found.sample_level)[1:]
     begun = found.chain_count.values[1:].sum()
     assert found.run_count.item() == counts.sum() - begun
@@ -158,7 +158,7 @@ def test_a_limit_state_at_a_point():
 
 @pytest.mark.long
 def test_samples_at_rest_share_one_level():
-    """Most of the samples do not move: the share of the first level is that of those that do."""
+    """Most samples do not move, so that the first level has the share of those that do."""
     weak = rf.GroundMotion.sine_pulse("1.9 m/s^2", "1.2 Hz")
     spread = {"width": ("normal", "0.5 m", "2 cm"), "scale": ("lognormal", 0.8, 0.22)}
     found = simulated(motions=weak, spread=spread, cases=400)
@@ -268,7 +268,7 @@ def test_interrupted_subset_simulation_warns_and_resumes(tmp_path, monkeypatch):
     assert (tmp_path / "study" / "level 02 step 01").is_dir()
 
 
-# what is refused ---------------------------------------------------------------------------------
+# refusals ---------------------------------------------------------------------------------
 
 
 @pytest.mark.parametrize(

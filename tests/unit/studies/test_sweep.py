@@ -46,7 +46,7 @@ FAST = {"accuracy": "fast", "free_vibration": "1 s"}
 
 
 def same(one, other):
-    """Whether two sweeps are the same to the last bit, but for the time of day."""
+    """Return whether two sweeps are equal bit for bit, apart from the time of day."""
     one, other = one.copy(), other.copy()
     del one.attrs["history"], other.attrs["history"]
     assert one.identical(other)
@@ -265,7 +265,7 @@ def test_sigint_interrupts_own_threads(request):
         time.sleep(0.01)
         return on_pads(20, height)
 
-    # in the background of a shell it is ignored from the start
+    # a background process of a shell ignores the signal
     before = signal.signal(signal.SIGINT, signal.default_int_handler)
     request.addfinalizer(lambda: signal.signal(signal.SIGINT, before))
     rf.sweep(scene, PULSE, height=([3.0], "m"), **FAST)  # loads machine code, or compiles it
@@ -363,7 +363,7 @@ def test_analysis_rounds_do_not_evict_records_of_sweeps(monkeypatch):
     record, rigid = rf.GroundMotion.from_arrays((pulse, "m/s^2"), "0.02 s"), rf.System(BLOCK)
     runs = rf.sweep(rigid, record, **FAST)
     analysis = rf.incremental_dynamic_analysis(rigid, record, scale=[1.0, 20.0], **FAST)
-    assert analysis.capacity_scale.max() < 20.0  # found in further rounds
+    assert analysis.capacity_scale.max() < 20.0  # further rounds have found it
     assert rf.case(runs).motion.sha256 == record.sha256
     assert rf.case(analysis, scale=20.0).motion.sha256 == record.scaled(20.0).sha256
 
@@ -398,7 +398,7 @@ def test_missing_cases_are_refused():
             rf.case(runs, **labels)
     part = runs.isel(width=0, scale=0)
     assert rf.case(part, motion="0").motion == rf.case(part, motion=0).motion
-    for wanted in (1, "1"):  # the name of the first, as tables write it, and the second's place
+    for wanted in (1, "1"):  # the name of the first as in tables, and the position of the second
         two = rf.sweep(SYSTEM, {"01": PULSE, "02": PULSE.scaled(2)}, **FAST)
         with pytest.raises(StudyError, match="give the name, '01'"):
             rf.case(two, motion=wanted)
@@ -480,7 +480,7 @@ def test_initial_state_axes_set_the_start_of_runs(monkeypatch):
     ],
 )
 def test_subset_of_a_sweep_does_not_return_a_wrong_system(axis, changes):
-    """Axes that change the system leave the one that was swept in the attributes."""
+    """Axes that change the system leave the unchanged system in the attributes."""
     runs = rf.sweep(SYSTEM, PULSE, **axis, **FAST)
     (name,) = axis
     kinds = {one["name"]: one["changes"] for one in json.loads(runs.attrs["axes_json"])}

@@ -30,7 +30,7 @@ def whole(tmp_path_factory):
 
 
 def is_part_of(part, whole):
-    """Whether what is there is what it should be; give the number of cases that are there."""
+    """Check that the cases of a part equal those of the complete sweep; return their number."""
     done = part.status != RunStatus.NOT_RUN
     assert part.status.size == CASES
     for name in ("peak_rotation", "rotation"):
@@ -59,7 +59,7 @@ def test_killed_sweep_resumes_to_identical_results(whole, tmp_path):
 
 
 def dying(height):
-    """Return a scene; the first process of a pool that makes the eighth one is killed meanwhile."""
+    """Return a scene; the first process of a pool that reaches the eighth one is killed."""
     mark, worker = Path(os.environ[MARK]), parent_process() is not None
     if worker and height.m_as("m") > HEIGHTS[0][7] - 0.01 and not mark.exists():
         mark.touch()
@@ -84,7 +84,7 @@ def test_killed_worker_loses_only_chunks_in_flight(tmp_path, monkeypatch):
 
 
 class Disk:
-    """A file system in memory, of some size."""
+    """A file system in memory with a given size."""
 
     READ_ONLY, REMOUNT, DETACH = 1, 32, 2  # <sys/mount.h>
 
@@ -104,7 +104,7 @@ class Disk:
 
 @pytest.fixture
 def disk(tmp_path):
-    """A disk of 64 kB, where one may be mounted."""
+    """Mount a disk of 64 kB, if permitted."""
     place = tmp_path / "disk"
     place.mkdir()
     found = Disk(place)
@@ -120,7 +120,7 @@ def test_full_disk_preserves_written_chunks(disk, whole):
         the_sweep(folder)
     assert 0 < is_part_of(rf.open_study(folder), whole[1]) < CASES
     assert not list(folder.glob(".*"))
-    assert disk.mount("10m", Disk.REMOUNT)  # room again: the same call goes on
+    assert disk.mount("10m", Disk.REMOUNT)  # with more room, the same call continues
     assert as_bytes(the_sweep(folder)) == as_bytes(whole[1])
     assert files(folder) == files(whole[0])
 

@@ -201,7 +201,7 @@ def test_a_table_has_a_row_for_each_case():
         assert case.motion == motions[runs.motion[k].item()].scaled(2.0)
         assert case.system.parts.block.si.width == runs.width[k].item()
         assert case.simulate().peak_rotation.item() == runs.peak_rotation[k, 1].item()
-    # with motions of its own dimension
+    # with motions as a separate dimension
     crossed = rf.sweep(ON_PADS, motions, cases=table.drop(columns="motion"), **FAST)
     assert dict(crossed.status.sizes) == {"case": 6, "motion": 2}
     again = crossed.peak_rotation.sel(motion="b")[[0, 3, 4]]
@@ -273,7 +273,7 @@ REFUSED = [
     ),
     (ON_PADS, PULSE, {"scale": [1.0, 2.0, 1.0]}, ["'scale' has the value 1.0 twice"]),
     (ON_PADS, PULSE, {"overturned": [1.0]}, ["'overturned' has the name of a result"]),
-    # their labels were replaced by numbers of bodies; others met the dimensions of analyses
+    # names of dimensions of datasets and analyses
     *(
         (lambda **_: ON_PADS, PULSE, {name: ["a", "b"]}, [f"'{name}' has the name of a result"])
         for name in ("body", "restrainer", "peak_slip", "limit_state", "stripe", "flip")

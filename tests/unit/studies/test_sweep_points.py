@@ -31,7 +31,7 @@ SOME = ["point_vertical_acceleration", "rotation"]
 
 
 def alone(runs, **labels):
-    """Run a case by itself, and give it with what the sweep has of it."""
+    """Return the single run of a case, and the case in the sweep."""
     return rf.case(runs, **labels).simulate(), runs.sel(labels)
 
 
@@ -69,7 +69,7 @@ def test_peaks_at_points_equal_single_runs(system, outputs):
             for name in (*PEAKS, "peak_base_shear", "residual_rotation", "peak_rotation"):
                 np.testing.assert_array_equal(part[name], one[name])
             for name in kept:
-                # a run that overturns has its end as a time too
+                # a run that overturns also has its end as a time
                 own = one[name].isel(time=np.isin(one.time, runs.time))
                 held = part[name].isel(time=slice(own.sizes["time"]))
                 np.testing.assert_array_equal(held, own)
@@ -105,7 +105,7 @@ def test_pivot_corner_does_not_move():
     )  # fmt: skip
     across, up = found[PEAKS[0]], found[PEAKS[1]]
     assert across.sel(point="right").item() == pytest.approx(0.0, abs=1e-15)
-    # at the start the other corner is highest: a turn about the right one, by hand
+    # at the start the other corner is highest: a rotation about the right one, by hand
     assert up.sel(point="left").item() == pytest.approx(2 * half * math.sin(0.05), rel=1e-12)
     assert across.sel(point="top").item() == pytest.approx(height * math.sin(0.05), rel=1e-12)
 

@@ -32,7 +32,7 @@ def test_stored_sweep_equals_sweep_in_memory(whole):
     assert rf.open_study(folder).identical(runs)
     before = files(folder)
     begun = time.process_time()
-    assert the_sweep(folder, chunk=1000).identical(runs)  # it keeps to its chunks
+    assert the_sweep(folder, chunk=1000).identical(runs)  # stored chunks keep their size
     assert time.process_time() - begun < 5.0
     assert files(folder) == before
     assert not list(folder.glob(".*"))
@@ -68,13 +68,13 @@ def test_store_can_be_read_while_the_sweep_runs(tmp_path):
 
     rf.sweep(scene, PULSE, height=(np.linspace(3, 4, 12), "m"), chunk=1, store=folder)
     assert len(seen) == 12
-    assert 0 < max(seen) < 12  # of two threads either may look first
+    assert 0 < max(seen) < 12  # either of two threads may read first
 
 
 def test_case_is_restored_from_the_folder_alone(whole, monkeypatch):
     folder, runs = whole
     monkeypatch.setattr(of_cases, "_studies", type(of_cases._studies)())
-    for place in (folder, runs):  # a sweep knows the folder in which it was kept
+    for place in (folder, runs):  # a sweep knows its folder
         found = rf.case(place, scale=SCALES[17], height="3.6 m", motion="noise")
         assert found.motion.sha256 == RECORD.scaled(SCALES[17]).sha256
         assert found.simulate().peak_rotation.item() == runs.peak_rotation[17, 1, 0].item()

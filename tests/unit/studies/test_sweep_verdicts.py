@@ -40,7 +40,7 @@ def test_subset_of_a_sweep_has_its_own_verdict(runs, tmp_path):
                 own = f"Of {count} of the 8 cases of the sweep {down} overturned and {count - down}"
                 assert part.rockframe.verdict == f"{own} did not."
                 assert part.rockframe.verdict in part.rockframe.summary
-                assert part.attrs["verdict"] == said  # which is still true
+                assert part.attrs["verdict"] == said  # it is still true
     assert runs.transpose().rockframe.verdict == said
     assert runs.mean("motion", keep_attrs=True).rockframe.verdict == said
     twice = rf.concat([runs, runs], "run")
@@ -89,7 +89,7 @@ def test_messages_of_many_cases_are_merged(tmp_path):
     for rows in (many.to_dataframe(), rf.table(many)):
         assert len(rows) == len(scales)
         assert rows["message"].tolist() == many.message.values.ravel().tolist()
-    assert "message" not in many.mean("scale").variables  # texts are no numbers
+    assert "message" not in many.mean("scale").variables  # texts have no mean
     alike(swept(chunk=5), many)
     alike(swept(chunk=7, store=tmp_path / "study"), many)
 

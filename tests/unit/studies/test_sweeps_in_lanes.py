@@ -52,7 +52,7 @@ def on(*parts, **options):
 
 
 def both(monkeypatch, *arguments, accuracy="fast", **options):
-    """Run a sweep in lanes, and again alone."""
+    """Run a sweep in lanes and without."""
     found = []
     monkeypatch.setattr(study, "COMPILING_SHARE", math.inf)
     for fewest in (1, 10**9):
@@ -78,7 +78,7 @@ def assert_same_bits(lanes, alone):
         ((PADS,), {}),
         pytest.param((PADS,), {"restraint": "leading-corner"}, marks=pytest.mark.wide),
         pytest.param((PADS,), {"rotation": "small"}, marks=pytest.mark.wide),
-        # whose lanes nothing else compiles
+        # no other test compiles their lanes
         pytest.param((SOIL,), {}, marks=pytest.mark.long),
         pytest.param((PADS, CAP, SOIL), {}, marks=pytest.mark.long),
     ],
@@ -127,7 +127,7 @@ def check_scene(monkeypatch, accuracy, parts, options):
 
 def test_lanes_leave_peaks_inside_polynomials_to_the_driver(monkeypatch):
     block = rf.Block(width="1 m", height="4 m", mass="1 t")
-    motion = rf.GroundMotion.sine_pulse("0.25 g", "1 Hz", 0.7)  # with no sample at its peak
+    motion = rf.GroundMotion.sine_pulse("0.25 g", "1 Hz", 0.7)  # no sample lies at its peak
     scales = 1.0 + np.array([-1e-6, 1e-8, 1e-6, 1e-5])
     lanes, alone = both(monkeypatch, rf.System(block), motion, scale=scales)
     assert_same_bits(lanes, alone)
@@ -201,7 +201,7 @@ def test_lanes_do_not_depend_on_neighbours_chunks_or_executors(monkeypatch, chun
     ids=["friction on pads", "stack"],
 )
 def test_list_based_equations_are_not_prepared_for_lanes(parts, accuracy):
-    """Lanes for them cannot be compiled: an attempt takes some seconds, and is told of."""
+    """Their lanes cannot be compiled: an attempt takes some seconds, and warns."""
     planned = plan_study(rf.System(*parts), MOTIONS[0], {"scale": [1.0]}, None, accuracy=accuracy)
     case = in_lanes.CasesOfJob(planned.job(range(1)))
     assert in_lanes.prepare_lanes(*case.plan(0)) is None
@@ -299,7 +299,7 @@ def test_failure_in_preparing_lanes_warns_and_falls_back(monkeypatch):
     for name in ("peak_rotation", "status", "impact_count"):
         xr.testing.assert_identical(runs[name].variable, alone[name].variable)
 
-    # what a user's function raises is told of that case alone
+    # an exception of a user's function is reported for its case alone
     def scene(width):
         if width > 0.9:
             raise ZeroDivisionError
