@@ -8,11 +8,11 @@ from contract.scenes import MOTIONS, SCENES
 
 @pytest.fixture(params=list(SCENES))
 def scene(request):
-    """Return the name of a scene; SCENES makes it."""
+    """Return the name of a scene in SCENES."""
     return request.param
 
 
-# the others, with and without vertical motion changed about, in the long run
+# the other motions run in the long tests
 FEW = ("pulse and vertical", "record")
 
 
@@ -20,13 +20,13 @@ FEW = ("pulse and vertical", "record")
     params=[name if name in FEW else pytest.param(name, marks=pytest.mark.long) for name in MOTIONS]
 )
 def motion_name(request):
-    """Return the name of a motion; MOTIONS makes it."""
+    """Return the name of a motion in MOTIONS."""
     return request.param
 
 
 @pytest.fixture
 def response(scene, motion_name):
-    """Return the response of a scene to a motion, with everything that can be asked for."""
+    """Return the response of a scene to a motion, with all outputs."""
     return _run(scene, motion_name).copy(deep=True)
 
 

@@ -15,10 +15,10 @@ HEAD = "| samples per period | harmonic of that period | white noise | earthquak
 
 
 def deviation(motion, period):
-    """Return the deviation from straight lines that the history tells [%]."""
+    """Return the deviation from straight lines stated in the history [%]."""
     floor = motion.through_storeys([f"{period!r} s"], 0.05)
-    told = [re.search(r"departs from that by up to (\S+) % of", line) for line in floor.history]
-    (value,) = [float(one[1]) for one in told if one]
+    matches = [re.search(r"departs from that by up to (\S+) % of", line) for line in floor.history]
+    (value,) = [float(match[1]) for match in matches if match]
     return value
 
 
@@ -52,9 +52,9 @@ def test_the_default_length_of_free_vibration():
 def test_the_museum_case(monkeypatch, tmp_path, capsys):
     script = DOCS.parent / "examples" / "floor_motion.py"
     monkeypatch.setattr(sys, "argv", [str(script), "--folder", str(tmp_path)])
-    with pytest.raises(SystemExit) as left:
+    with pytest.raises(SystemExit) as exited:
         runpy.run_path(str(script), run_name="__main__")
-    assert left.value.code == 0
+    assert exited.value.code == 0
     lines = capsys.readouterr().out.splitlines()
     fates = ["Overturned" in line for line in lines if line.startswith("  on ")]
     assert fates == [False, False, False, True, True, True, True]

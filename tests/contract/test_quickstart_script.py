@@ -48,9 +48,9 @@ def test_errors_are_one_line(script, record, tmp_path, capsys):
     assert script(record, "--component", "XYZ", "--folder", tmp_path) == 1
     assert "'XYZ'" in capsys.readouterr().err
     assert script(tmp_path / "none.AT2", "--folder", tmp_path) == 1
-    told = capsys.readouterr().err
-    assert "none.AT2" in told
-    assert told.count("\n") == 1
+    stderr = capsys.readouterr().err
+    assert "none.AT2" in stderr
+    assert stderr.count("\n") == 1
 
 
 def test_component_option_requires_a_record(script, capsys):

@@ -45,7 +45,7 @@ def edge(low=1.0, high=8.0):
 
 
 def pretended(overturns):
-    """Return a run that overturns where a rule of scene and plan says so; None: is cut off."""
+    """Return a run whose verdict is a function of scene and plan; None means unfinished."""
 
     def run(system, plan):
         verdict = overturns(system, plan)

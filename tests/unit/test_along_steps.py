@@ -10,7 +10,7 @@ from rockframe.solve.trajectory import Steps
 
 
 def along(ends, starts, inside=None, length=0.5, events=None):
-    """Make steps of one length; `starts` tells those that begin anew, by their number."""
+    """Make steps of equal length; `starts` maps steps after an event to their first values."""
     rows, shown = [], []
     for step, end in enumerate(ends):
         if step in starts:
@@ -34,7 +34,7 @@ def demand(values):
 
 
 def test_peak_just_after_an_event_is_found():
-    """The friction demand jumps at an event: the samples before it and long after see nothing."""
+    """The friction demand jumps at an event; samples before and long after it miss the peak."""
     found = along([1.0, 1.0, 1.0, 1.0], {0: 0.5, 2: 7.0})
     (peak,), (time,) = found.largest(demand)
     assert (peak, time) == (7.0, 1.0)
@@ -90,7 +90,7 @@ def test_peak_at_step_end_is_found_among_many_candidate_steps():
 
 @pytest.mark.parametrize("jump", [1, 4])
 def test_no_parabola_is_fitted_through_a_kink(jump):
-    """A base that presses again and slips needs its friction at once, and no more than that."""
+    """A base in renewed contact that slips needs its friction at once, and no more."""
 
     def inside(which):
         return {"demand": np.tile(np.where(np.arange(1, 8) < jump, 0.0, 0.4), len(which))}

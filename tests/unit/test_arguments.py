@@ -32,7 +32,7 @@ def test_without_an_upper_bound():
 
 @pytest.mark.parametrize("given", [np.array(0.5), xr.DataArray(0.5)])
 def test_zero_dimensional_arrays_are_refused_as_lists(given):
-    """It calls itself iterable, but has no elements."""
+    """A zero-dimensional array claims to be iterable, but has no elements."""
     system = rf.System(rf.Block(width="1 m", height="5 m", mass="1 t"))
     motion = rf.GroundMotion.sine_pulse("1 m/s^2", "1 Hz")
     for function in (

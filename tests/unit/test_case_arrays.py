@@ -47,7 +47,7 @@ def test_case_arithmetic_is_bit_identical_to_scalars(work):
 
 
 def course(x):
-    """Take ways that differ in their number of rounds, and one that fails."""
+    """Compute with branches that differ in their number of iterations, one of which fails."""
     if x > 0.85:
         msg = "too large"
         raise ValueError(msg)

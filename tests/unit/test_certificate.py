@@ -65,13 +65,13 @@ def test_certification_does_not_change_the_run():
     ],
 )
 def test_the_margin_is_the_distance_to_the_boundary(off, side):
-    """Up to the resolution: the bisection of an interval of a geometric row."""
+    """Up to the resolution of a bisection within an interval of the geometric row."""
     scale = edge() / (1.0 + side * off)
     run = certified(PULSE.scaled(scale))
     assert bool(run.overturned) == (side < 0.0)
     found, flip = float(run.verdict_margin), float(run.verdict_flip_scale)
     assert off * (1.0 - 2.0 * RESOLUTION) <= found <= off
-    # the verdict does change there, and not at the margin
+    # the verdict changes there, and not at the margin
     assert falls(scale * flip) != bool(run.overturned)
     assert falls(scale * (1.0 + side * found)) == bool(run.overturned)
     assert abs(flip - 1.0) - found <= 1.01 * RESOLUTION * abs(flip - 1.0)
@@ -150,7 +150,7 @@ def test_nudged_scenes_preserve_options():
 
 
 def test_nudges_that_make_parts_incompatible_are_skipped():
-    """A cap as wide as the block can be no narrower, nor the block any wider."""
+    """A cap as wide as the block cannot be narrower, nor the block wider."""
     block = rf.Block(width="2 m", height="8 m", mass="50 t")
     cap = rf.CushionCap(width="2 m", height="0.5 m", mass="10 t")
     system = rf.System(block, cap, rf.WinklerSoil(stiffness="30 MPa", damping_ratio=0.1))
@@ -170,7 +170,7 @@ def test_certificate_does_not_repeat_warnings_of_the_scene():
 def test_certificate_counts_its_runs():
     made = []
     found = certificate_of(lambda _, plan: made.append(plan) or False)
-    assert found.runs == len(made) - 1  # the first is the run itself
+    assert found.runs == len(made) - 1  # the first is the certified run
 
 
 @pytest.mark.parametrize(
@@ -203,7 +203,7 @@ def test_a_margin_has_no_floor(edge):
 
 
 def test_overturning_island_near_high_peaks_is_found():
-    """An island of overturning between two scales of the first row, told by the peaks about it."""
+    """An island of overturning between two scales of the first row, indicated by nearby peaks."""
     middle, half = 0.3172, 0.0008
 
     def run(_, plan):
@@ -219,7 +219,7 @@ def test_overturning_island_near_high_peaks_is_found():
 
 
 def certified_on_courses_of_their_own(**options):
-    """Certify runs that all stand, each on a course of its own beyond a certain scale."""
+    """Certify standing runs, each of which takes a different course beyond a certain scale."""
     rng = np.random.default_rng(0)
 
     def run(_, plan):
@@ -274,7 +274,7 @@ def test_uncertain_peak_near_overturning_is_not_converged():
 
 
 def test_parameters_are_also_varied_within_the_nudge():
-    """A band of overturning well inside, with the nudge itself beyond it."""
+    """A band of overturning inside the nudge, which itself lies beyond it."""
     found = certificate_of(
         lambda system, _: 20.009 < system.parts.pads.to_dict()["frequency_ratio"] < 20.011
     )
@@ -284,7 +284,7 @@ def test_parameters_are_also_varied_within_the_nudge():
 
 @pytest.mark.parametrize(("lower", "upper"), [(0.98, 1.027), (0.973, 1.02)])
 def test_margin_uses_the_nearer_of_two_flips(lower, upper):
-    """Both within one interval of the geometric row."""
+    """Both flips lie within one interval of the geometric row."""
     found = certificate_of(lambda _, plan: not lower < plan.motion.si.peak / PULSE.si.peak < upper)
     assert 0.02 * (1.0 - 2.0 * RESOLUTION) <= found.margin <= 0.02
 

@@ -43,7 +43,7 @@ from rockframe.solve.accuracy import accuracy_of
 
 
 def combinations():
-    """Return certificates of all that may be found, in the runs of either sense."""
+    """Return certificates of all possible findings, for runs of either verdict."""
     stands, falls = RunSummary(False, 0.1, (0.5,)), RunSummary(True, 0.2, (1.0, 1.0), 1.0, 1)
     back, lost = RunSummary(False, 0.3, (0.5, 0.5)), RunSummary(None, 0.1)
     same = dict.fromkeys((-0.1, 0.1), stands)
@@ -79,7 +79,7 @@ def combinations():
 
 
 def test_certificate_sentence_matches_its_numbers():
-    """Whatever was found: the flip that is known, the margin, and whether the verdict is sure."""
+    """For all findings: the known flip, the margin, and whether the verdict is certain."""
     seen = set()
     for found in combinations():
         text, values, attributes = found.sentence, found.values(), found.attributes()
@@ -88,7 +88,7 @@ def test_certificate_sentence_matches_its_numbers():
         assert attributes["certificate"] == text
         scaled = f"scaled {'up' if flip > 1.0 else 'down'} by {100.0 * abs(flip - 1.0):.3g} %"
         nearest = f"with another verdict is {flip:.6g}."
-        # the flip is said once, wherever it is known, and none where it is not
+        # a known flip is stated once, an unknown one never
         said = (scaled in text) + (nearest in text)
         assert said == (0 if math.isnan(flip) else 1), text
         assert ("another verdict is" in text) + ("scaled" in text) == said, text
@@ -122,13 +122,13 @@ def test_reach_smaller_than_the_nudge_is_sufficient():
 
 
 def test_continued_run_is_judged_by_falling_flat():
-    """Under a pulse that brings the block back from beyond the angle, up to 3.735 of it."""
+    """Under a pulse that returns the block from up to 3.735 times the overturning angle."""
     system = rf.System(rf.Block(width="1 m", height="5 m", mass="10 t"))
     pulse = rf.GroundMotion.sine_pulse("2.5 m/s^2", "1 Hz").scaled(3.70)
     run = system.simulate(
         pulse, free_vibration="10 s", overturning="continue", certify=True, outputs=None
     )
-    assert bool(run.overturned)  # it passed the angle
+    assert bool(run.overturned)  # it passed the overturning angle
     assert verdict_of(run) is False
     flip = float(run.verdict_flip_scale)
     assert flip == pytest.approx(3.736 / 3.70, abs=1e-3)
@@ -201,7 +201,7 @@ def test_sensitivity_equals_change_under_nudged_parameters():
                 other = rf.System(*parts).simulate(PULSE, free_vibration="4 s", outputs=None)
                 peaks.append(float(other.peak_rotation))
     expected = max(abs(peak - peaks[0]) for peak in peaks)
-    # or a little more, somewhere inside the nudge
+    # or slightly more, inside the nudge
     assert float(run.peak_sensitivity) >= expected * (1.0 - 1e-12)
     assert float(run.peak_sensitivity) == pytest.approx(expected, rel=0.05)
 
@@ -216,7 +216,7 @@ def test_initial_state_is_scaled_without_a_motion():
 
 @pytest.mark.parametrize("share", [0.0, 0.3])
 def test_margin_of_an_initial_state_follows_from_energy(share):
-    """A rigid block overturns if it can lift its centre of mass above the corner."""
+    """A rigid block overturns if its energy lifts its centre of mass above the corner."""
     block, edge = rf.Block.from_size(radius="2 m", slenderness=4, mass="1 t"), 1.1
     angle = block.si.overturning_angle
     rate = math.sqrt(1.5 * 9.80665 / 2.0 * (1.0 - math.cos((1.0 - share) * angle)))
@@ -361,7 +361,7 @@ def test_shorter_step_settings_take_more_steps(accuracy):
 
 
 def test_verdict_is_confirmed_only_if_all_clearances_agree():
-    """Of a body that overturns: its rate at that angle, and the time that was left."""
+    """Clearances of an overturning body: its rate at that angle, and the time left."""
     falls = RunSummary(overturned=True, peak=0.2, clearances=(1.0, 0.5), time=4.0, direction=1)
     for clearances, sure in (
         ((1.1, 0.6), True),
@@ -375,7 +375,7 @@ def test_verdict_is_confirmed_only_if_all_clearances_agree():
 
 @pytest.mark.parametrize("sign", [-1.0, 1.0])
 def test_scan_reports_the_nearest_flip_of_both_sides(sign):
-    """Both lie between the same changes of the first row."""
+    """Both flips lie between the same changes of the first row."""
     near, far = 0.12, 0.17
 
     def look(change):

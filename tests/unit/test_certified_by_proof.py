@@ -71,7 +71,7 @@ def test_contradiction_of_run_and_proof_warns(system, monkeypatch):
     ],
 )
 def test_different_overturning_time_warns(base, peak, away, monkeypatch):
-    """The verdict is proved, but the run is of another course."""
+    """The verdict is proved, but the run takes another course."""
     given = proving.prove_run
 
     def later(*arguments, **options):

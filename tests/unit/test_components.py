@@ -166,13 +166,13 @@ def test_replace_accepts_own_property_values(given):
         value = getattr(given, name)
         if value is not None:
             again = getattr(given.replace(**{name: value}), name)
-            if isinstance(value, pint.Quantity):  # derived from others, some lose a digit
+            if isinstance(value, pint.Quantity):  # derived quantities may lose a digit
                 np.testing.assert_allclose(again.magnitude, value.magnitude, rtol=1e-14)
                 again, value = again.units, value.units
             assert repr(again) == repr(value)
 
 
-# the way to text and back ----------------------------------------------------------------
+# text representations ----------------------------------------------------------------
 
 _size = st.floats(1e-3, 1e4)
 _ratio = st.floats(1e-3, 1e3)
@@ -498,7 +498,7 @@ class TestRestitution:
             rf.System(block, maker(greatest + 1e-6))
         assert len(caught) == 1
         assert caught[0].filename == __file__
-        # warnings are errors here: these must give none
+        # warnings are errors here
         rf.System(block, maker(greatest))
         rf.System(block, maker(greatest - 1e-6))
         rf.System(block, maker(None))
@@ -551,7 +551,7 @@ class TestCentreOfMass:
         assert [each.m_as("m") for each in block.centre_of_mass] == [1.0, 0.0]
 
     def test_eccentric_block_has_different_angles_and_restitutions(self):
-        """Angular momentum about the corner that lands, :eq:`eq-eccentric-impact`."""
+        """Angular momentum about the landing corner, :eq:`eq-eccentric-impact`."""
         block = rf.Block(**self.SIZE, inertia="150 kg*m^2", centre_of_mass=("0.7 m", "0.05 m"))
         body = rf.System(block).setting.body
         left, right = -0.35, 0.25

@@ -55,7 +55,7 @@ def test_run_attributes_list_matches_attributes_that_differ_between_runs():
         if any(not np.array_equal(others[0].attrs[name], other.attrs[name]) for other in others)
     }
     settings = {"accuracy", "certificate_nudge", "certificate_reach", "certificate_resolution"}
-    # no run is proved, no step is of fixed length, and no body stands on another without a layer
+    # no run is proved or has fixed steps, and no scene is a stack on rigid bases
     of_stacks = {"impacts_of_several_modes", "impacts_of_no_mode", "corners_held_without_pressing"}
     of_proofs = {"proof", "proof_bits", "proof_verdict"}
     not_here = {"solver_substeps"} | of_stacks | of_proofs
@@ -63,7 +63,7 @@ def test_run_attributes_list_matches_attributes_that_differ_between_runs():
 
 
 def test_concat_never_retains_attributes_of_one_run(runs):
-    """All stand, all overturn, some do, in one step and in two, by files too."""
+    """None, all or some runs overturn; joined in one step or two, also through files."""
     rows = [row(runs, 2.0, STANDS), row(runs, FALLS, 10.0), row(runs, STANDS, FALLS)]
     for chosen in (*rows, [runs[STANDS]], [runs[STANDS]] * 2, [runs[FALLS]] * 2):
         assert not of_one_run(rf.concat(chosen, "scale"))
@@ -82,7 +82,7 @@ def test_concat_never_retains_attributes_of_one_run(runs):
 
 
 def test_concat_drops_run_attributes_left_by_xarray(runs):
-    """The fault: a row that all stand, beside one of which some fell, says that none did."""
+    """A row of standing runs joined with a row of some overturned ones once kept its verdict."""
     plain = [
         xr.concat(
             [one.drop_dims(["time", "event"]) for one in part],
@@ -101,7 +101,7 @@ def test_concat_drops_run_attributes_left_by_xarray(runs):
 
 
 def test_xarray_concat_drops_conflicting_run_attributes(runs):
-    """Every run says all of it, so that what differs conflicts."""
+    """Every run has all attributes, so that differences conflict."""
     assert runs[STANDS].attrs["cautions"] == runs[FALLS].attrs["cautions"] == "none"
     warned = runs[STANDS].assign_attrs(cautions=CAUTION)
     for chosen in (row(runs, STANDS, FALLS), [runs[STANDS], warned], [warned, runs[FALLS]]):
@@ -219,7 +219,7 @@ SOME = {"free_vibration": "2 s", "scale": [0.5, 1.0, 2.0]}
 
 
 def sweep_of(widths, *pulses):
-    """Sweep over some widths, under pulses of some frequencies."""
+    """Sweep over widths, under pulses of given frequencies."""
     motions = {f"{f} Hz": rf.GroundMotion.sine_pulse("3 m/s^2", f"{f} Hz") for f in pulses or (1,)}
     return rf.sweep(CABINET, motions, width=(widths, "m"), **SOME)
 
@@ -306,7 +306,7 @@ def test_joined_sweeps_with_gaps_equal_the_whole_sweep(tmp_path):
 
 
 def test_numbers_in_several_units_are_not_joined():
-    """They would stand in one row, without a unit."""
+    """They would be in one array without a unit."""
     one, two = run(STANDS), run(FALLS)
     turned = one.assign(peak_rotation=np.rad2deg(one.peak_rotation).assign_attrs(units="deg"))
     with pytest.raises(SchemaError, match="concat: peak_rotation is in deg and rad; put it into"):

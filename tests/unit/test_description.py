@@ -53,7 +53,7 @@ class TestDescription:
 
     @pytest.mark.parametrize("base", [pads, soil])
     def test_rocking_damping_ratio_of_an_eccentric_base(self, base):
-        """Springs and dashpots have the same levers, about the foot of the centre of mass."""
+        """Springs and dashpots have the same levers about the foot of the centre of mass."""
         part, e = base(), 0.1
         eccentric = block(centre_of_mass=("4 m", f"{e} m"))
         support = rf.System(eccentric, part).setting.support
@@ -193,7 +193,7 @@ class TestDescription:
             small = assembled(name, rotation="small").describe()
             assert "small rotation" in small
             assert small != assembled(name).describe()
-            if len(parts) < 3 and "Winkler" not in name:  # Eq. (18) is named as that of small ones
+            if len(parts) < 3 and "Winkler" not in name:  # Eq. (18) is cited for small rotations
                 assert "small rotation" not in assembled(name).describe()
 
     def test_states_gravity(self):
@@ -232,7 +232,7 @@ class TestDescription:
             (start,) = starts
             for line in numbers:
                 assert line[start] != " ", line
-                if line not in names:  # a line that goes on stands below what it goes on from
+                if line not in names:  # a continued line is indented below its beginning
                     assert not line[:start].strip()
 
     def test_is_plain_text(self):

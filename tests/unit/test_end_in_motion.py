@@ -22,7 +22,7 @@ STILL_MOVING = "still has the energy to overturn"
 
 
 def rise():
-    """Energy to the edge on rigid ground, m g R (1 - cos theta)."""
+    """Return the energy to overturn on rigid ground, m g R (1 - cos theta)."""
     radius = math.hypot(0.25, 1.0)
     return 400.0 * 9.80665 * radius * (1.0 - math.cos(math.atan2(0.25, 1.0)))
 
@@ -58,7 +58,7 @@ def test_run_ending_in_motion_warns():
 
 
 def test_continued_run_ending_in_mid_fall_warns(monkeypatch):
-    monkeypatch.setattr(study, "COMPILING_SHARE", math.inf)  # lanes, whatever they take to compile
+    monkeypatch.setattr(study, "COMPILING_SHARE", math.inf)  # lanes in any case
     system, strong = rf.System(BLOCK), PULSE.scaled(3.0)
     with pytest.warns(SolverWarning, match=STILL_MOVING):
         short = system.simulate(strong, overturning="continue")
@@ -83,7 +83,7 @@ def test_body_held_by_a_tie_beyond_overturning_does_not_warn():
 
 
 def test_falling_lower_body_of_a_stack_warns():
-    """It carries a squat one, which is far from its own overturning angle."""
+    """The slender body carries a squat one, which is far from its own overturning angle."""
     squat = rf.Block(width="0.6 m", height="0.5 m", mass="300 kg")
     slender = rf.Block(width="0.7 m", height="3 m", mass="3 t")
     pads = rf.TwoSpringSupport(frequency_ratio=30, damping_ratio=0.1)
@@ -104,11 +104,11 @@ def test_falling_lower_body_of_a_stack_warns():
 @pytest.mark.parametrize("parts", [[], [PADS], [SOIL], [PADS, CAP, SOIL]], ids=len)
 @pytest.mark.parametrize("share", [0.9, 1.1])
 def test_end_in_motion_warning_follows_the_energy_bound(parts, share):
-    """A block that is let go with a rotation rate of that energy, and looked at at once."""
+    """A block released with the rotation rate of that energy, and examined at once."""
     system = rf.System(BLOCK, *parts)
     setting = system.assembly.setting
     body, rotation = setting.body, 0.0
-    about = body.base_inertia  # about the middle of the base, which pads and soil hold
+    about = body.base_inertia  # about the middle of the base, held by pads and soil
     if not parts:
         about, rotation = body.inertia + body.mass * body.radius**2, 1e-9  # about a corner
     rate = math.sqrt(2.0 * share * setting.overturning_energy / about)
@@ -139,7 +139,7 @@ def test_certificate_of_a_run_ending_in_motion_is_limited_to_its_end():
 
 
 def pedestal(height, width="1 m", stiffness="5 MPa"):
-    """A block on pads on a tall cap: held far, it leaves soil and cap without equilibrium."""
+    """A block on pads on a tall cap, which has no equilibrium at large held rotations."""
     return rf.System(
         rf.Block(width="1 m", height="2 m", mass="4 t"),
         rf.TwoSpringSupport(frequency_ratio=20, damping_ratio=0.1),
@@ -171,7 +171,7 @@ def test_cap_on_soft_soil_rotates_more_than_the_block():
     setting = pedestal("1 m", stiffness="1 MPa").assembly.setting
     angle = setting.overturning_angle
     far = setting.statics(angle)
-    assert far.restoring_moment < 0.0  # it has to be pulled back
+    assert far.restoring_moment < 0.0  # it must be pulled back
     assert angle < far.reactions["cap_rotation"] < 1.01 * angle
 
 
@@ -221,7 +221,7 @@ def test_stored_energy_does_not_exceed_its_bound(system, share):
 
 
 def test_stored_energy_bound_is_infinite_on_slopes_and_under_loads():
-    """Uphill, and under a load, more is stored than the weight alone would: there is no bound."""
+    """On a slope or under a load more energy is stored than by the weight alone, without bound."""
     level = max_stored_energy(rf.System(BLOCK, PADS).assembly, 0.01)
     for system, rotation in (
         (rf.System(BLOCK, PADS, inclination="5 deg"), -0.01),

@@ -83,7 +83,7 @@ def test_errors_survive_pickling_and_copying(kind, again):
 
 
 class Console:
-    """Stands for IPython, which asks an error for its traceback, and draws it."""
+    """A substitute for IPython, which takes the traceback of an error and renders it."""
 
     InteractiveTB = None
 
@@ -91,7 +91,7 @@ class Console:
         return self
 
     def structured_traceback(self, kind, error, trace):
-        assert error.__cause__ is None  # it would be drawn too, with its lines
+        assert error.__cause__ is None  # it would be rendered too, with its lines
         assert error.__context__ is None
         return [kind.__name__, *(name for _, _, name, _ in traceback.extract_tb(trace))]
 
@@ -134,7 +134,7 @@ def test_notebooks_show_the_line_that_was_wrong_and_no_other(misuse, monkeypatch
     assert name == caught.type.__name__
     assert frames == [here, "<lambda>"]
     whole = [one.name for one in caught.traceback]
-    assert len(whole) > 2  # for those who look for it
+    assert len(whole) > 2  # the complete traceback is still available
 
 
 def test_ipython_shows_only_the_wrong_line():

@@ -28,7 +28,7 @@ def written(tmp_path_factory):
     folder = tmp_path_factory.mktemp("written")
     with pytest.MonkeyPatch.context() as patch:
         patch.chdir(folder)
-        # as the fixture no_pictures, which serves single tests alone
+        # as the fixture no_pictures, which has function scope
         patch.setattr(page, "_rendered", lambda figure, kind: b"<svg/>")
         scene = TEMPLATES["block"].split("[run]", maxsplit=1)[0]
         Path("scene.toml").write_text(scene + '[run]\naccuracy = "fast"\n')
@@ -54,7 +54,7 @@ def written(tmp_path_factory):
 
 @pytest.fixture
 def folder(tmp_path, monkeypatch, written):
-    """Stand among copies of these files."""
+    """Change to a folder with copies of these files."""
     for path, content in written.items():
         (tmp_path / path).parent.mkdir(exist_ok=True)
         (tmp_path / path).write_bytes(content)
@@ -67,7 +67,7 @@ def contents(folder):
 
 
 REFUSED = {
-    # a file that is read, by any of its names
+    # an input, under any of its names
     "run scene.toml -o scene.toml --overwrite": "the result of a run ends in .nc",
     "certify scene.toml -o scene.toml --overwrite": "ends in .nc",
     "run scene.toml -m motion.nc -o motion.nc --overwrite": "this file is an input",
@@ -85,7 +85,7 @@ REFUSED = {
     "plot run.nc -o run.nc --overwrite": "a picture ends in .png or .svg or .pdf",
     "report run.nc -o run.nc --overwrite": "a report ends in .html or .htm",
     "report odd.html --overwrite": "this file is an input",
-    # what somebody else wrote, or rockframe as another kind
+    # files of other programs, or of another kind
     "run scene.toml -o mine.nc": "not the result of a run that rockframe wrote",
     "run scene.toml -o motion.nc": "not the result of a run that rockframe wrote",
     "run scene.toml -o study.nc": "not the result of a run that rockframe wrote",
@@ -103,7 +103,7 @@ REFUSED = {
     "report run.nc -o mine.html": "not a report that rockframe wrote",
     "report run.nc -o moving.html": "not a report that rockframe wrote",
     "report mine.nc": "no result of a run",
-    # names that do not fit
+    # unsuitable names
     "run scene.toml -o out": "the name has no ending",
     "run scene.toml -o out.csv": "ends in '.csv'",
     "run scene.toml -o kept": "this is a folder",
@@ -116,7 +116,7 @@ REFUSED = {
 
 
 def write_others():
-    """Put files there that rockframe has not written, and other names of those that it reads."""
+    """Create files that rockframe has not written, and links to its inputs."""
     xr.Dataset({"x": ("t", [1.0])}, attrs={"source": "my own"}).to_netcdf("mine.nc")
     for ending in ("csv", "png", "svg", "pdf", "html"):
         Path(f"mine.{ending}").write_text("a report by rockframe 0.1.0, status, overturned\n1,2\n")
@@ -254,7 +254,7 @@ def test_file_is_written_completely_or_left_unchanged(tmp_path):
 def test_output_file_survives_closed_or_full_stdout(closed, folder):
     words = [sys.executable, "-m", "rockframe", "run", "scene.toml", "-o", "new.nc"]
     reader, writer = os.pipe()
-    os.close(reader)  # whoever read has gone before a word was printed
+    os.close(reader)  # the reader has closed before anything is printed
     with open(os.devnull if closed == "|head" else "/dev/full", "w") as full:
         done = subprocess.run(
             words, stdout=writer if closed == "|head" else full, stderr=subprocess.PIPE, text=True,
@@ -290,13 +290,13 @@ THEMSELVES = {
 
 
 def test_only_known_modules_write_files():
-    """A function that writes goes by `write_file`, or its module stands above with its reason."""
+    """A function that writes uses `write_file`, or its module is listed above with a reason."""
     package = Path(rf.__file__).parent
     found = set()
     for file in package.rglob("*.py"):
         text = file.read_text(encoding="utf-8")
         if not re.search(rf"\b({'|'.join(WRITES)}|open|write)\b", text):
-            continue  # no such call is in it
+            continue  # without such a call
         for node in ast.walk(ast.parse(text)):
             if not isinstance(node, ast.Call):
                 continue

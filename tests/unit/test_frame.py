@@ -104,7 +104,7 @@ def test_members_survive_json_round_trip(name):
         assert again.members_table().identical(frame.members_table())
 
 
-# standing where a block does ----------------------------------------------------------------
+# frames as blocks ----------------------------------------------------------------
 
 
 @pytest.mark.parametrize("name", FRAMES)
@@ -150,7 +150,7 @@ def test_a_system_takes_a_frame_and_gives_the_same_numbers(name):
     ]
     np.testing.assert_array_equal(runs[0].rotation, runs[1].rotation)
     assert "FrameEquivalent.from_members" in rf.System(frame, pads).describe()
-    again = rf.System.from_dataset(runs[0])  # what a file keeps is enough
+    again = rf.System.from_dataset(runs[0])  # the dataset is sufficient
     assert again.describe() == rf.System(frame, pads).describe()
     assert repr(frame) in re.sub(r"(?<=,)\s+", " ", again.describe())
 
@@ -186,7 +186,7 @@ def test_a_shape_factor_below_one_is_warned_about_and_used(arguments):
     assert len(caught) == 1
     assert caught[0].filename == __file__
     assert frame.shape_factor < 1.0
-    # the warning came once; warnings are errors here
+    # no second warning: warnings are errors here
     assert pickle.loads(pickle.dumps(frame)) == frame  # noqa: S301
     assert component_from_dict(frame.to_dict()) == frame
 
@@ -211,11 +211,11 @@ def test_a_frame_from_parameters_knows_no_members():
         frame.members_table()
 
 
-# what the members come to -------------------------------------------------------------------
+# properties of the members -------------------------------------------------------------------
 
 
 def by_brute_force(rectangles, width, height, cells=120):
-    """Return mu of rectangles (mass, x, y, width, height), each summed over a grid of points."""
+    """Return mu of rectangles (mass, x, y, width, height), summed over grids of points."""
     grid = (np.arange(cells) + 0.5) / cells - 0.5
     mass = inertia = 0.0
     for m, x, y, w, h in rectangles:
@@ -265,7 +265,7 @@ def as_members(rectangles):
 def test_shape_factor_matches_point_sum_and_is_at_least_one(building):
     width, height, rectangles = building
     points = by_brute_force(rectangles, width, height)
-    assume(points < 1e4)  # else all mass is in the middle, where the points are too coarse
+    assume(points < 1e4)  # otherwise all mass is near the middle, where the points are too coarse
     frame = FrameEquivalent.from_members(
         as_members(rectangles),
         width=f"{width!r} m",
@@ -304,7 +304,7 @@ def test_grid_of_points_converges_to_shape_factor_three():
             for i, j in itertools.product(range(n), repeat=2)
         ]
         excess.append(FrameEquivalent.from_members(points, **OUTLINE).shape_factor - 3.0)
-    # 1/mu falls short by a part 1/n^2
+    # 1/mu is too small by the share 1/n^2
     assert excess == pytest.approx([3.0 / (n * n - 1.0) for n in (4, 8, 16)], rel=1e-12)
 
 
@@ -363,7 +363,7 @@ def test_centre_of_mass_off_mid_height_warns():
             frame = FrameEquivalent.from_members([point], **MIDDLE)
         assert len(caught) == 1
         assert caught[0].filename == __file__
-        assert component_from_dict(frame.to_dict()) == frame  # silent
+        assert component_from_dict(frame.to_dict()) == frame  # without a warning
     with pytest.warns(ModelWarning, match=r"0\.3805 rad instead of 0\.2783 rad"):
         FrameEquivalent.from_members([tank(y="7 m", x="0 m")], **MIDDLE)
 

@@ -71,7 +71,7 @@ def test_regular_frame_volume_matches_hand_calculation():
 
 def test_no_two_members_of_a_regular_frame_overlap():
     def occupied(member):
-        # perpendicular to the plane: where members of this kind and side stand
+        # perpendicular to the plane: positions of members of this kind and side
         front = {"front": -1.0, "back": 1.0}.get(member.name.split()[-1], 0.0)
         half = member.si.depth / 2.0
         middle = front * (2.0 - half)
@@ -180,7 +180,7 @@ def test_members_table_marks_unknown_values():
     assert float(row.inertia) == 800.0
 
 
-# what is refused ----------------------------------------------------------------------------
+# refusals ----------------------------------------------------------------------------
 
 
 @pytest.mark.parametrize(

@@ -88,7 +88,7 @@ def test_ladder_certificate_and_critical_scale_use_the_slope():
 
 @pytest.mark.parametrize(("peak", "leaves"), [("-9.9 m/s^2", False), ("-10.1 m/s^2", True)])
 def test_separation_warning_uses_gravity_normal_to_the_slope(peak, leaves):
-    """On a slope g cos(i) presses, less than g: of a motion normal to it that much is enough."""
+    """On a slope only g cos(i) presses, so that a smaller normal acceleration separates."""
     angle, gravity = math.radians(12.0), 10.2
     size = float(peak.split()[0])
     assert (-size > gravity * math.cos(angle)) == leaves

@@ -24,7 +24,7 @@ PULSE = rf.GroundMotion.sine_pulse("-3 m/s^2")
 
 
 class Quantity:
-    """A quantity as astropy has them."""
+    """A quantity as in astropy."""
 
     __module__ = "astropy.units.quantity"
 
@@ -184,7 +184,7 @@ def test_contradictory_depths_warn():
         rf.System(frame("6 m"), cap, soil("4 m"))
     rf.System(frame("4 m"), soil("4 m"))  # warnings are errors here
     rf.System(frame("6 m"), cap, soil("5 m"))
-    rf.System(block(), soil("4 m"))  # of a block no depth is known
+    rf.System(block(), soil("4 m"))  # the depth of a block is unknown
     assert soil("4 m").depth.m_as("m") == pytest.approx(4.0)
     assert rf.WinklerSoil(stiffness="80 MPa", damping_ratio=0.2).depth is None
 
@@ -274,7 +274,7 @@ def test_measure_names_are_case_insensitive(name):
 
 
 def _named(owner, name):
-    """Public functions with their names, those of classes too."""
+    """Return public functions and methods with their names."""
     for one in dir(owner):
         found = None if one.startswith("_") else getattr(owner, one)
         if isinstance(found, FunctionType):
@@ -303,7 +303,7 @@ TAKING |= {
 
 
 def _last_argument(function):
-    """An argument that is known by its name; of a function that takes any, None."""
+    """Return a named argument, or None if the function takes any name."""
     given = signature(function).parameters.values()
     if any(one.kind is one.VAR_KEYWORD for one in given):
         return None

@@ -157,12 +157,12 @@ OF_RESULTS = {
 
 
 def refused(call, *given):
-    """Call what must be refused; give what was said instead, where it was not."""
+    """Make a call that must be refused; return what is wrong if it is not."""
     try:
         call(*given)
     except RockframeError as problem:
         return "" if len(str(problem)) > 20 else f"says only {problem}"
-    except Exception as problem:  # what must not be
+    except Exception as problem:  # a fault
         return f"{type(problem).__name__}: {problem}"
     return "was taken"
 
@@ -284,7 +284,7 @@ LINES = (
 
 @pytest.fixture
 def folder(tmp_path, monkeypatch, run):
-    """Stand in a folder with a scene, a study, a record, a result, and files that are none."""
+    """Change to a folder with a scene, a study, a record, a result, and invalid files."""
     monkeypatch.chdir(tmp_path)
     Path("scene.toml").write_text(SCENE)
     Path("study.toml").write_text(AXIS)
@@ -298,7 +298,7 @@ def folder(tmp_path, monkeypatch, run):
 
 
 def told(words, capsys):
-    """Type a command; give what is wrong with how it is refused."""
+    """Run a command; return what is wrong with its refusal."""
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")
         code = main(words)

@@ -1,8 +1,8 @@
 """Frequent mistakes of users: each row is refused with a message that names the wrong argument.
 
-A row is a call and what its message must say. Those of Python are written as texts, so that a fault
-names its row; those of the command line are what was typed. Junk in single arguments is
-`test_misuse.py`, names proposed are `test_messages.py`.
+A row is a call and the required words of its message. Calls in Python are texts, so that a failure
+names its row; command lines are written as typed. Junk in single arguments is tested in
+`test_misuse.py`, suggestions of names in `test_messages.py`.
 """
 
 import json
@@ -102,7 +102,7 @@ def decay(**changed):
 
 
 NAMES = {
-    # what there is not: what was meant is proposed
+    # misspelt names, with the suggestion
     "rf.GroudMotion": "'GroundMotion'",
     "rf.fragilty": "'fragility'",
     "rf.plot.respones": "'response'",
@@ -480,7 +480,7 @@ VALUES = {
     "rf.plot.sweep(xr.Dataset())": "rf.plot.sweep needs the result of a sweep",
     "rf.plot.velocity_pulse(run)": "rf.plot.velocity_pulse needs a VelocityPulse",
     "rf.plot.player(run, title=3)": "title must be a text, got 3",
-    # codes, exports, tests, proofs, parts of one's own
+    # codes, exports, tests, proofs, user-defined parts
     "rf.codes.circolare_2019(GROUND, TARGET)": "system needs a System",
     "rf.codes.circolare_2019(SYSTEM, 0.3)": "expected a GroundMotion or several",
     "rf.codes.circolare_2019(SYSTEM, TARGET)": "a damping ratio of 0.08, got 0.05",
@@ -562,7 +562,7 @@ LINES = {
 SCENE = TEMPLATES["block"].split("[run]", maxsplit=1)[0] + '[run]\naccuracy = "fast"\n'
 STUDY = 'scene = "scene.toml"\nmotions = ["record.AT2"]\n'
 FILES = {
-    # what a file of a scene, or of a study, is wrong by; and what is said, with the line
+    # faults of files of scenes and studies, with the message and its line
     SCENE.replace("[block]", "[blok]"): "line 4: unknown key 'blok'; was 'block'",
     SCENE.replace("width", "widht"): "line 5: unknown key 'widht'; was 'width'",
     SCENE.replace('"0.8 m"', "0.8"): "line 5: [block]: width needs a length with a unit",
@@ -588,7 +588,7 @@ FILES = {
 
 @pytest.fixture(scope="module")
 def folder(tmp_path_factory):
-    """Make a folder with a scene, a study, a record, results, and files that are none."""
+    """Make a folder with a scene, a study, a record, results, and invalid files."""
     place = tmp_path_factory.mktemp("misuses")
     (place / "scene.toml").write_text(SCENE)
     (place / "study.toml").write_text(f"{STUDY}[axes]\nscale = [1.0]\n")
@@ -610,13 +610,13 @@ def folder(tmp_path_factory):
 
 @pytest.fixture
 def inside(folder, monkeypatch):
-    """Stand in that folder."""
+    """Change to that folder."""
     monkeypatch.chdir(folder[0])
     return folder[1]
 
 
 def answered(row, given):
-    """Carry out a row; give what was raised."""
+    """Evaluate a row and return the exception."""
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")
         try:
@@ -627,7 +627,7 @@ def answered(row, given):
 
 
 def wrong(row, words, problem):
-    """Say what is wrong with an answer; nothing if it is sound."""
+    """Return what is wrong with an exception, or an empty text."""
     said = str(problem)
     if not isinstance(problem, RockframeError):
         return f"{row}: {type(problem).__name__}: {said}"
@@ -639,7 +639,7 @@ def test_each_misuse_is_refused_by_its_name(rows, inside):
     kept = sorted(Path().rglob("*"))
     faults = [wrong(row, words, answered(row, inside)) for row, words in rows.items()]
     assert not [one for one in faults if one]
-    assert sorted(Path().rglob("*")) == kept, "nothing is written by what is refused"
+    assert sorted(Path().rglob("*")) == kept, "refused calls wrote files"
 
 
 def test_misspelt_names_get_a_suggestion(inside):
@@ -648,7 +648,7 @@ def test_misspelt_names_get_a_suggestion(inside):
 
 
 def typed(words, capsys):
-    """Type a command; give its exit code, and all that it said."""
+    """Run a command; return its exit code and all its output."""
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")
         code = main(words)
@@ -685,7 +685,7 @@ def test_misuse_tables_have_hundreds_of_rows():
 
 
 def callables():
-    """All public functions and classes, and the methods of these, by their names."""
+    """Return all public functions, classes and their methods, with their names."""
     modules = [one for one in (getattr(rf, name) for name in rf.__all__)
                if isinstance(one, ModuleType) and one is not rf.extension]  # fmt: skip
     for module in (rf, *modules):
@@ -740,7 +740,7 @@ def test_missing_attributes_behave_as_in_python():
 
 def test_failing_property_reports_its_cause():
     class Leaning(rf.extension.Component):
-        """A part whose property needs what there is not."""
+        """A part whose property reads a missing attribute."""
 
         @property
         def angle(self):

@@ -27,7 +27,7 @@ HEAD = (
 
 
 class Recorder:
-    """Takes the calls of a model in the place of OpenSees."""
+    """Records the calls of a model in the place of OpenSees."""
 
     def __init__(self):
         self.calls = []
@@ -41,7 +41,7 @@ class Recorder:
 
 def written(system, motion, tmp_path, **options):
     path = system.to_opensees(motion, tmp_path / "model.py", **options)
-    return runpy.run_path(str(path))  # imports no OpenSees: it is imported when it runs
+    return runpy.run_path(str(path))  # OpenSees is only imported by running the model
 
 
 @pytest.mark.parametrize("base", BASES)
@@ -85,7 +85,7 @@ def test_opensees_model_matches_the_system(base, dashpots, tmp_path):
     run = system.simulate(both, free_vibration="1 s", output_step="0.01 s")
     np.testing.assert_allclose(given["rotation"], run.rotation, rtol=1e-8, atol=1e-30)
     assert given["peak"] == run.peak_rotation.item()
-    # every node is held by two bars at least, or is the middle of the base
+    # every node has at least two bars, or is the middle of the base
     ends = [end for call in ops.of("element") if call[0] == "corotTruss" for end in call[2:4]]
     ground = {call[2] for call in springs}
     assert all(ends.count(tag) >= 2 for tag in places if tag not in ground)
@@ -125,11 +125,11 @@ def test_invalid_export_arguments_are_refused(tmp_path):
         system.to_opensees(PULSE, path)
     path.unlink()
     system.to_opensees(PULSE, path)
-    system.to_opensees(PULSE.scaled(0.5), path)  # over its own
+    system.to_opensees(PULSE.scaled(0.5), path)  # replaces its own file
 
 
 def test_rotation_at_the_final_unaligned_time_is_not_exported(tmp_path):
-    """A run that overturns ends between two of them; OpenSees goes on to the next."""
+    """A run that overturns ends between two samples; OpenSees continues to the next."""
     system = rf.System(BLOCK, PADS, restraint="centre")
     strong = PULSE.scaled(3.0)
     given = written(system, strong, tmp_path, free_vibration="3 s")["PARAMETERS"]
@@ -141,7 +141,7 @@ def test_rotation_at_the_final_unaligned_time_is_not_exported(tmp_path):
 
 
 def differences(system, motion, tmp_path, **options):
-    """Run the file; give by how much peak and history differ [%]."""
+    """Run the file; return the differences of peak and history [%]."""
     path = system.to_opensees(motion, tmp_path / "model.py", **options)
     ran = subprocess.run(
         [sys.executable, str(path)], capture_output=True, text=True, check=False, timeout=300
@@ -163,7 +163,7 @@ def differences(system, motion, tmp_path, **options):
 @pytest.mark.parametrize("row", table(PAGE, HEAD), ids=lambda row: f"{row[0]}, {row[1]}")
 @pytest.mark.filterwarnings("ignore:restitution 1 exceeds")
 def test_opensees_reproduces_documented_differences(row, tmp_path):
-    """Under the pulse; the record takes a minute."""
+    """Under the pulse; the record would take a minute."""
     block = rf.Block(width="0.8 m", height="4 m", mass="2 t")
     name, dashpots, peak, _, history, _ = row
     base = {"pads": PADS, "soil": SOIL, "rigi": rf.RigidGround()}[name[:4]]

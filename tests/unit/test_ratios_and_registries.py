@@ -75,7 +75,7 @@ def test_a_ratio_must_be_finite(name):
         assert "finite" in message
 
 
-# the registry that all libraries share -----------------------------------------------------
+# the application registry -----------------------------------------------------
 
 
 def test_application_registry_is_not_modified():
@@ -189,7 +189,7 @@ def test_sentences_are_converted_to_display_units():
         ("at (-0.5, 3) m, 4 kg m^2", "at (-500, 3000) mm, 4 kg m^2"),
         ("0.0544 m at most, 3 mm, 2 months", "54.4 mm at most, 3 mm, 2 months"),
         ("Block(width='0.6 m', mass='5000.0 kg')", "Block(width='600 mm', mass='5 t')"),
-        # the same behind it in degrees goes; and a rounded number has a digit less in them
+        # a repetition in degrees is dropped; a rounded number has one digit less in degrees
         ("0.244979 rad (14.04°), 0.01663 rad", "14.036°, 0.953°"),
         ("0.5 rad/s", "0.5 rad/s"),
     ):
@@ -201,7 +201,7 @@ def test_pair_with_a_quantity_is_not_read_as_number_and_unit():
     metre = pint.Quantity(1.0, "m")
     assert to_si_values([metre, "20 cm"], LENGTH, owner="here", name="width") == [1.0, 0.2]
     assert to_si_values([[1, 2], "cm"], LENGTH, owner="here", name="width") == [0.01, 0.02]
-    # whole numbers of a generator, which were lost, and an array without dimensions
+    # integers of a generator, and an array without dimensions
     each = to_si_values(((k for k in (1, 2)), "cm"), LENGTH, owner="here", name="width")
     assert each == [0.01, 0.02]
     assert to_si_values((np.array(7.0), "cm"), LENGTH, owner="here", name="width") == [0.07]

@@ -27,13 +27,13 @@ pytestmark = [pytest.mark.unit, pytest.mark.usefixtures("no_pictures")]
 
 @pytest.fixture(autouse=True)
 def short_certificates(monkeypatch):
-    """Have certificates that a report makes try as few runs as they may."""
+    """Limit certificates of reports to the least number of runs."""
     defaults = inspect.unwrap(rf.Certification.__init__).__kwdefaults__
     monkeypatch.setitem(defaults, "runs", MIN_RUNS)
 
 
 class Page(HTMLParser):
-    """Tags, what they refer to, and all text."""
+    """The tags of a page, their addresses, and its text."""
 
     def __init__(self, text):
         super().__init__()
@@ -74,7 +74,7 @@ def test_report_is_complete_and_self_contained(response, tmp_path):
         "Tower & bell",
         response.attrs["verdict"],
         "Certificate: the verdict holds",
-        "The body stands also with",  # the run has no certificate: it is made for the report
+        "The body stands also with",  # the report certifies a run without a certificate
         "0.8 m",
         "5500 kg",
         "greatest absolute ground acceleration",
@@ -112,7 +112,7 @@ def test_overturned_run_under_a_record_is_certified_from_file(tmp_path):
     for motion in (level, both):
         run = system.simulate(motion)
         assert bool(run.overturned)
-        assert float(run.time[-1]) < 7.9  # and the motion goes on
+        assert float(run.time[-1]) < 7.9  # and the motion continues
         run.to_netcdf(tmp_path / "out.nc")
         with xr.open_dataset(tmp_path / "out.nc") as kept:
             assert rf.System.from_dataset(kept).motion == rf.GroundMotion.from_arrays(
@@ -123,7 +123,7 @@ def test_overturned_run_under_a_record_is_certified_from_file(tmp_path):
         assert "No certificate" not in (tmp_path / "out.html").read_text()
     assert rf.concat([run, run]).sizes == {"run": 2}
     assert "ground_acceleration_after_end [m s^-2]" not in rf.table(run)
-    # other samples are no other motion: the digest tells
+    # a motion with other samples has another digest
     changed = run.assign(ground_acceleration_after_end=0.0 * run.ground_acceleration_after_end)
     with pytest.warns(RecordWarning, match="not what the run had"):
         assert rf.System.from_dataset(changed).motion is None
@@ -158,7 +158,7 @@ def test_runs_that_overturned_under_a_record_are_certified(parts, given, tmp_pat
     run.to_netcdf(tmp_path / "out.nc")
     with xr.open_dataset(tmp_path / "out.nc") as kept:
         words = words_of(rf.report(kept, tmp_path / "out.html"))
-    assert "verturned" in words  # of a block that may slide: did not slide, overturned
+    assert "verturned" in words  # a block that may slide "did not slide, overturned"
     assert "Certificate: the verdict" in words
     assert "No certificate" not in words
 
@@ -322,7 +322,7 @@ def test_report_contains_project_and_conclusion(response, tmp_path):
     for said in ("Object Bell <tower>", "Checked by C. Rossi", "Date 2026-11-24",
                  "Conclusion It stands.", "Assumptions Sound masonry. A level floor."):  # fmt: skip
         assert said in words, said
-    assert path.read_text().count("<ol>") == 2  # what is assumed, and what is left out
+    assert path.read_text().count("<ol>") == 2  # assumptions and limitations
     for wrong, message in (
         ({"objekt": "x"}, "project has no entry 'objekt'; was 'object' meant?"),
         ({"object": 3.5}, "object of the project must be text"),
@@ -361,7 +361,7 @@ def test_sweep_report_lists_all_cases_and_the_worst_in_full(tmp_path):
     assert f"0.5 short {shear:.4g} " in words
     mean = np.degrees(float(runs.peak_rotation.mean()))
     assert f"mean of 4 {mean:.4g}" in words
-    # the worst falls first: its verdict is that of the run alone
+    # the worst case overturns first, with the verdict of the single run
     alone = rf.case(runs, motion="long", scale=2.0).simulate()
     assert "Simulated again: scale 2, motion long." in words
     assert alone.attrs["verdict"] in words
@@ -388,7 +388,7 @@ def test_sweep_report_shows_forces_and_slips_in_display_units(tmp_path):
         "peak point horizontal acceleration (top) [g]",
     ):  # fmt: skip
         assert head in words, head
-    assert "right reaction" not in words.split("The worst case in full")[0]  # not asked for
+    assert "right reaction" not in words.split("The worst case in full")[0]  # not requested
     for motion in SUITE:
         one = runs.sel(motion=motion, scale=1.0)
         numbers = [
@@ -399,7 +399,7 @@ def test_sweep_report_shows_forces_and_slips_in_display_units(tmp_path):
             float(abs(one.vertical_reaction).max()) / 1e3,
             float(one.peak_point_horizontal_displacement.squeeze()) * 1e3,
         ]
-        # two tables, which fit on a sheet
+        # two tables that fit on a page
         for table in (numbers[:5], numbers[5:]):
             assert f"1 {motion} " + " ".join(f"{number:.4g}" for number in table) in words
     largest = float(runs.peak_slip.max()) * 1e3
@@ -436,7 +436,7 @@ def test_every_analysis_has_a_report(tmp_path):
         assert said in words, name
         assert "Provenance" in words
         assert "not described" not in words or name == "joined"
-        assert "s^-" not in words.split("Scene")[0]  # powers stand above the line
+        assert "s^-" not in words.split("Scene")[0]  # powers are superscripts
 
 
 def test_a_dynamic_analysis_has_its_capacities(tmp_path, monkeypatch):
@@ -480,7 +480,7 @@ def test_report_refuses_a_motion_for_a_run_without_one(tmp_path):
 
 
 def test_certificate_of_a_different_run_is_rejected(tmp_path):
-    """Of runs that were joined nobody knows the motions: another one has the same verdict."""
+    """Motions of joined runs are unknown: another motion may have the same verdict."""
     system = rf.System(rf.Block(width="0.8 m", height="3.2 m", mass="5.5 t"))
     pulses = [rf.GroundMotion.sine_pulse(f"{peak} m/s^2", "2 Hz") for peak in (3.0, 4.0)]
     joined = rf.concat([system.simulate(one, outputs=None) for one in pulses], "run")

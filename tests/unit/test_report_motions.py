@@ -22,7 +22,7 @@ KNOWN = {"event": "Irpinia <1980>", "station": "Sturno", "component": "N270", "m
 
 
 def record(seed):
-    """A motion that only its samples describe, of which some things are known."""
+    """Return a sampled motion with some metadata."""
     made = rf.GroundMotion.stochastic(6.5, "15 km", seed=seed).window("4 s", "16 s")
     known = {} if seed == 0 else {**KNOWN, "station": f"Sturno {seed}"}
     return rf.GroundMotion(made.si, name=f"record {seed}", metadata=known)
@@ -45,7 +45,7 @@ def text_of(path):
 
 
 def rows_of(path, section):
-    """Cells of the tables of a section."""
+    """Return the cells of the tables of a section."""
     inner = path.read_text(encoding="utf-8").split(f"<h2>{section}</h2>", 1)[1].split("<h2>")[0]
     lines = re.findall(r"<tr>(.*?)</tr>", inner, re.DOTALL)
     return [re.findall(r"<t[dh][^>]*>(.*?)</t[dh]>", line) for line in lines]
@@ -84,7 +84,7 @@ def test_report_compares_records_with_their_target(runs, suite, tmp_path):
         of_record = ["-"] * 4
         if label != "record 0":
             of_record = ["Irpinia &lt;1980&gt;", "6.9", f"Sturno {label[-1]}", "N270"]
-        # the misfit is found anew, from the motions as they are
+        # the misfit is computed anew from the current motions
         numbers = [f"{known['scale_factor']:.4g}", f"{peak:.4g}", f"{known['spectral_misfit']:.4g}"]
         assert row == [label, *of_record, *numbers]
     seconds = (np.geomspace(0.1, 4.0, 40), "s")

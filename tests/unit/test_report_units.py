@@ -31,13 +31,13 @@ PULSE = rf.GroundMotion(rf.GroundMotion.sine_pulse("3 m/s^2", "1 Hz").si, name="
 
 
 def words_of(path):
-    """Return what a report says, but for what builds its scene again."""
+    """Return the text of a report without the code that rebuilds its scene."""
     html = path.read_text(encoding="utf-8").split("</style>", 1)[1].split("<h2>Provenance</h2>")[0]
     return unescape(re.sub(r"<[^>]*>", " ", html))
 
 
 def left_in_si(words):
-    """Return numbers in SI units of which others were chosen, with what stands around them."""
+    """Return numbers in SI units for which other units were chosen, with the text around them."""
     words = re.sub(
         r"(?<=[A-Za-z])[⁻⁰¹²³⁴⁵⁶⁷⁸⁹]+", lambda one: f"^{one[0].translate(RAISED)}", words
     )
@@ -120,4 +120,4 @@ def test_wrong_unit_is_quoted_as_typed(unit):
     words = str(caught.value)
     assert f"got '{unit}'" in words
     assert "m s^-2" in words
-    assert "9.81" not in words  # which is a value, and no unit
+    assert "9.81" not in words  # the value of g, not the unit

@@ -59,7 +59,7 @@ def test_stack_defaults_to_rigid_ground():
 
 @pytest.mark.filterwarnings("ignore::rockframe.errors.RockframeWarning")
 def test_lowest_body_uplifts_at_its_own_threshold_below_airborne_bodies():
-    """Nothing of them presses the lowest body, whose end lifts as its own force comes to zero."""
+    """They do not press the lowest body, whose end lifts when its own force vanishes."""
     stack = rf.Stack(
         rf.Block(width="0.6 m", height="0.34 m", mass="634 kg"),
         rf.Block(width="0.89 m", height="0.33 m", mass="2526 kg"),
@@ -69,7 +69,7 @@ def test_lowest_body_uplifts_at_its_own_threshold_below_airborne_bodies():
     pulse = rf.GroundMotion.sine_pulse(amplitude="33.7 m/s^2", frequency="2.57 Hz", cycles=3)
     run = rf.System(stack, RIGID).simulate(pulse, duration="0.46 s")
     assert int(run.status) == Status.COMPLETED
-    # on level ground it lifts alone when the ground acceleration is b/h g
+    # on level ground it uplifts alone at a ground acceleration of b/h g
     width, height = 0.95, 0.31
     alone = (run.event_kind == EventKind.UPLIFT) & (run.event_body == 3) & (run.event_time > 0.4)
     (time,) = run.event_time.values[alone.values]
@@ -95,7 +95,7 @@ def test_first_uplift_of_a_two_body_stack_matches_closed_form(upper, lower, firs
     found = system.simulate(shaken(1.01 * way * starts), duration="0.35 s")
     assert found.event_kind[0] == EventKind.UPLIFT
     assert found.event_body[0] == first
-    # the ground goes to one side, the body to the other
+    # the ground moves to one side, the body to the other
     moved = found.body_rotation.to_numpy()[first - 1]
     assert -way * moved[np.abs(moved) > 0.0][0] > 0.0
     when = float(found.event_time[0])
@@ -108,7 +108,7 @@ def test_jointly_rocking_bodies_equal_one_block():
     motion = shaken(1.1 * GRAVITY * 0.5 / 3.4, 0.5)
     one = rf.System(whole).simulate(motion, duration="2 s", accuracy="reference")
     both = on_rigid(*parts).simulate(motion, duration="2 s", accuracy="reference")
-    until = float(one.event_time[1])  # the first impact may part them
+    until = float(one.event_time[1])  # they may separate at the first impact
     early = one.time < until
     assert np.abs(one.rotation)[early].max() > 1e-3
     assert np.abs((both.rotation - one.rotation)[early]).max() < 1e-9
@@ -234,29 +234,29 @@ def test_more_links_than_can_be_numbered_are_refused():
 @pytest.mark.parametrize(
     ("number", "ends"),
     [
-        (19, "0.43 s"),  # bounces that die while friction on soil lets go and holds in turn
-        (5998, "0.32 s"),  # a corner whose blows break the hold of friction on pads
-        # two corners that throw one another up
+        (19, "0.43 s"),  # decaying bounces while friction on soil slips and sticks in turn
+        (5998, "0.32 s"),  # a corner whose impacts overcome friction on pads
+        # two corners that throw each other up
         pytest.param(483, "0.32 s", marks=pytest.mark.long),
-        (1284, "0.02 s"),  # a base that holds, whatever that takes, under one that slips
-        (5678, "0.6 s"),  # two slips that start at once, one against the other
-        # a corner that bears again as the one let go would not press
+        (1284, "0.02 s"),  # a base held by any force under one that slips
+        (5678, "0.6 s"),  # two opposite slips that start at once
+        # a corner that bears again because the released one would not press
         pytest.param(5699, "1.1 s", marks=pytest.mark.long),
-        (6897, "0.89 s"),  # two corners of which either pulls, and comes back, without the other
-        (7278, "0.302 s"),  # a pad's end that waits on as a corner elsewhere parts
-        # a hold that parts a corner below, instead of lifting its own end
+        (6897, "0.89 s"),  # two corners of which either pulls, and returns, without the other
+        (7278, "0.302 s"),  # an end of a pad that keeps waiting while a corner elsewhere separates
+        # a hold that separates a corner below instead of lifting its own end
         pytest.param(1234, "1.845 s", marks=pytest.mark.long),
-        (6946, "0.73 s"),  # a base that slips on, the more it is held back
-        # a slip that ends, by which a corner is held without pressing
+        (6946, "0.73 s"),  # a base that slips more the more it is held back
+        # an ending slip after which a corner is held without pressing
         pytest.param(9364, "1.188 s", marks=pytest.mark.long),
-        (3184, "0.24 s"),  # a corner held without pressing, which is not the one that lets go
-        (2972, "2.4 s"),  # bounces on a pad, by rounding
-        (5525, "0.22 s"),  # corners of one base, closed by rates that are rounding
-        (4018, "0.08 s"),  # a corner that comes back from below its base
+        (3184, "0.24 s"),  # a corner held without pressing, other than the one that separates
+        (2972, "2.4 s"),  # bounces on a pad by rounding
+        (5525, "0.22 s"),  # corners of one base, closed by rates of rounding
+        (4018, "0.08 s"),  # a corner that returns from below its base
     ],
 )
 def test_contact_changes_terminate(number, ends):
-    """Each stopped before it, by changes of contact without end, or by a force that is none."""
+    """Each run once stopped early, by endless contact changes or an inadmissible force."""
     system, motion = drawn("stack of mixed bases", np.random.default_rng(number))
     with plainly():
         found = system.simulate(
@@ -267,13 +267,13 @@ def test_contact_changes_terminate(number, ends):
 
 @pytest.mark.filterwarnings("ignore::rockframe.errors.RockframeWarning")
 def test_light_drum_does_not_alternate_between_slip_and_stick():
-    """A drum, nearly weightless, would slip and stick in turn: it tilts as it begins to slip."""
+    """A nearly weightless drum would slip and stick in turn: it tilts as it begins to slip."""
     system, motion = drawn_column(142)
     found = system.simulate(motion, duration="0.12 s", outputs=None)
     assert int(found.status) == Status.COMPLETED
 
 
-@pytest.mark.long  # of six and of seven drums, whose equations no other test compiles
+@pytest.mark.long  # no other test compiles the equations of six and seven drums
 @pytest.mark.filterwarnings("ignore::rockframe.errors.RockframeWarning")
 @pytest.mark.parametrize(
     ("number", "ends"),
@@ -281,7 +281,7 @@ def test_light_drum_does_not_alternate_between_slip_and_stick():
     ids=["a set far from that with sticking", "small bounces of drums that slip", "a slip jams"],
 )
 def test_drum_columns_complete_previously_failing_runs(number, ends):
-    """Of eleven closed corners and more, of slips that small bounces end, and without forces."""
+    """Eleven closed corners and more, slips ended by small bounces, and missing forces."""
     system, motion = drawn_column(number)
     found = system.simulate(
         motion, duration=ends, accuracy="standard", outputs=None, second_look=False
@@ -292,7 +292,7 @@ def test_drum_columns_complete_previously_failing_runs(number, ends):
 @pytest.mark.filterwarnings("ignore::rockframe.errors.RockframeWarning")
 @pytest.mark.parametrize(("number", "ends", "most"), [(684, "0.5 s", 1e-5), (434, "0.53 s", 1e-3)])
 def test_onset_of_slip_preserves_velocity(number, ends, most):
-    """A body that is held begins to slip as another one, on pads, changes its contact."""
+    """A held body begins to slip when another body on pads changes its contact."""
     system, motion = drawn("stack of mixed bases", np.random.default_rng(number))
     with plainly():
         found = system.simulate(
@@ -304,7 +304,7 @@ def test_onset_of_slip_preserves_velocity(number, ends, most):
 @pytest.mark.long
 @pytest.mark.filterwarnings("ignore::rockframe.errors.RockframeWarning")
 def test_body_beyond_friction_limit_is_not_held():
-    """It cannot slip with the corners that bear; two of them part."""
+    """It cannot slip with the bearing corners; two of them separate."""
     system, motion = drawn("stack of mixed bases", np.random.default_rng(4852))
     found = system.simulate(motion, duration="1.31 s", accuracy="fast", outputs=None)
     assert int(found.status) == Status.COMPLETED
@@ -312,7 +312,7 @@ def test_body_beyond_friction_limit_is_not_held():
 
 @pytest.mark.filterwarnings("ignore::rockframe.errors.RockframeWarning")
 def test_a_pad_that_catches_up_creates_no_energy():
-    """The end that it meets does not slide by a force that has a corner below pull."""
+    """The end in contact does not slide by a force that makes a corner below pull."""
     system, motion = drawn("stack of mixed bases", np.random.default_rng(1835))
     with plainly():
         found = system.simulate(
@@ -323,7 +323,7 @@ def test_a_pad_that_catches_up_creates_no_energy():
 
 @pytest.mark.filterwarnings("ignore::rockframe.errors.RockframeWarning")
 def test_stack_in_joint_free_fall_lands_without_rotation():
-    """Its ground falls faster four times; rates of 1e-29 had the upper block bounce once."""
+    """The ground falls faster four times; rates of 1e-29 once made the upper block bounce."""
     system, motion = drawn("stack of mixed bases", np.random.default_rng(326))
     with plainly():
         found = system.simulate(
@@ -362,7 +362,7 @@ def test_ambiguous_slip_change_is_not_counted_as_impact_mode():
     ],
 )
 def test_landing_on_pads_above_a_light_body_creates_no_energy(plate, ground, joint, rule):
-    """What would stop the body that lands is more than the light one can hand on to the ground."""
+    """The impulse that stops the landing body exceeds what the light one can transmit."""
     height, mass = plate
     lower = rf.Block(width="0.6 m", height=f"{height} m", mass=f"{mass} kg")
     pads = rf.TwoSpringSupport(
@@ -386,7 +386,7 @@ def test_landing_on_pads_above_a_light_body_creates_no_energy(plate, ground, joi
     [(10.0, "leading-corner", 11), (40.0, "contact-state", 3), (10.0, "centre", 6)],
 )
 def test_holding_after_flight_above_a_light_body_creates_no_energy(mass, rule, seed):
-    """What would stop the slip of a body that lands is more than a light one below can hand on."""
+    """The impulse that stops the slip of a landing body exceeds what a light one can transmit."""
     tall = rf.Block(width="1.6 m", height="5.7 m", mass="1500 kg")
     plate = rf.Block(width="2.2 m", height="1.5 m", mass=f"{mass} kg")
     pads = rf.TwoSpringSupport(frequency_ratio=90, damping_ratio=0.0)
@@ -405,7 +405,7 @@ def test_holding_after_flight_above_a_light_body_creates_no_energy(mass, rule, s
 @pytest.mark.filterwarnings("ignore::rockframe.errors.RockframeWarning")
 @pytest.mark.parametrize("number", [122, 123])
 def test_coming_to_rest_while_slipping_creates_no_energy(number):
-    """What ends bounces may pull; friction does not act then, since it would drive the slip."""
+    """The end of bounces may pull; friction does not act then, since it would drive the slip."""
     system, motion = drawn("stack of mixed bases", np.random.default_rng(number))
     run = system.simulate(motion, outputs=["energy"], accuracy="fast", second_look=False)
     taken = (run.impact_energy + run.repinning_energy).to_numpy()
@@ -415,7 +415,7 @@ def test_coming_to_rest_while_slipping_creates_no_energy(number):
 @pytest.mark.filterwarnings("ignore::rockframe.errors.RockframeWarning")
 @pytest.mark.parametrize("seed", [2, 9])
 def test_short_slip_reversed_by_an_impact_is_opposed_by_friction(seed):
-    """On pads beneath two heavy bodies: friction of the sense it had would drive it."""
+    """On pads beneath two heavy bodies: friction in its former direction would drive the slip."""
     upper = rf.Block(width="0.9 m", height="3 m", mass="1860 kg")
     middle = rf.Block(width="1.2 m", height="3.9 m", mass="315 kg")
     plate = rf.Block(width="1.7 m", height="0.95 m", mass="6 kg")
@@ -459,7 +459,7 @@ def sliding_upon_a_landing_body(restitution):
 
 @pytest.mark.parametrize("restitution", [0.001, 0.3])
 def test_landing_beneath_a_sliding_body_obeys_restitution(restitution):
-    """Whatever the body above takes of the blow, which is more or less than as it stood."""
+    """Whatever share of the impulse the body above takes, more or less than before."""
     system, events = sliding_upon_a_landing_body(restitution)
     base, landings = system.on_base(1), 0
     for i in np.flatnonzero(events.kind == IMPACT):
@@ -480,7 +480,7 @@ def test_landing_beneath_a_sliding_body_obeys_restitution(restitution):
 
 @pytest.mark.parametrize("restitution", [0.001, 0.3])
 def test_impulse_on_a_body_above_a_landing_obeys_friction_limit(restitution):
-    """Where no corner closes all impulses are rounding: these are no reason to stop a slip."""
+    """Where no corner closes, all impulses are rounding and must not stop a slip."""
     system, events = sliding_upon_a_landing_body(restitution)
 
     def velocity(mode, state):
@@ -502,7 +502,7 @@ def test_impulse_on_a_body_above_a_landing_obeys_friction_limit(restitution):
 @pytest.mark.parametrize("sense", [1.0, -1.0])
 @pytest.mark.parametrize("above", [1.0, -1.0])
 def test_ending_a_short_slip_loses_only_its_own_energy(sense, above):
-    """It ends at once: friction above, which presses less or more until then, has no time."""
+    """The slip ends at once, before friction above can change."""
     light = rf.Block(width="1 m", height="0.65 m", mass="25 kg")
     joint, pads = rf.RigidGround(friction=0.2), rf.TwoSpringSupport(
         frequency_ratio=60, damping_ratio=0.1, friction=0.6

@@ -172,7 +172,7 @@ def test_frame_statics_match_closed_form():
     system = rf.System(BENT)
     weight, half = 380e3 * system.options.gravity, 0.8
     at = system.moment_rotation(["0.05 rad"])
-    # the weight of the beam rises twice as fast as that of the columns
+    # the beam rises twice as fast as the centres of the columns
     lever = (180.0 + 2.0 * 200.0) / 380.0 * np.hypot(0.8, 4.8)
     angle = np.arctan(1.0 / 6.0)
     assert at.restoring_moment.item() == pytest.approx(weight * lever * np.sin(angle - 0.05))
@@ -193,7 +193,7 @@ def test_columns_and_beam_are_drawn_at_their_positions():
         for k, one in enumerate(others, 1):
             np.testing.assert_allclose(one, first + np.array([7.0 * k, 0.0]), atol=1e-12)
         assert np.ptp(beam[:2, 1]) == pytest.approx(0.0, abs=1e-12)
-        # it lies on the higher of the upper corners
+        # the beam rests on the higher of the upper corners
         assert beam[0, 1] == pytest.approx(first[2:, 1].max(), abs=1e-12)
         deck, head = (run.isel(point=k, time=place) for k in (0, 1))
         for name, point, rest in (("deck", deck, (0.0, 11.0)), ("head", head, (-6.2, 9.6))):

@@ -28,7 +28,7 @@ PULSE = rf.GroundMotion.sine_pulse("-3 m/s^2", "1 Hz")
 
 
 def fast(system=SYSTEM, motion=PULSE, **arguments):
-    """Run at "fast"; give the result, and what it warns of."""
+    """Run at "fast"; return the result and its warnings."""
     with warnings.catch_warnings(record=True) as said:
         warnings.simplefilter("always")
         given = {"free_vibration": "4 s", "outputs": None, **arguments}
@@ -64,7 +64,7 @@ def test_reliable_fast_run_is_silent_and_estimates_peak_error():
     ],
 )
 def test_inaccurate_fast_run_warns(number, ratio, words):
-    """One verdict and two peaks among 384 scales of a noise on six pads."""
+    """One verdict and two peaks among 384 scales of noise on six pads."""
     pads = rf.TwoSpringSupport(frequency_ratio=ratio, damping_ratio=0.1)
     system = rf.System(rf.Block.from_size(radius="2.5 m", slenderness=4.5, mass="20 t"), pads)
     motion = noise().scaled(float(np.linspace(0.4, 1.1, 64)[number]))
@@ -76,8 +76,8 @@ def test_inaccurate_fast_run_warns(number, ratio, words):
     assert other == (words == "the verdict is not sure")
     assert any(words in one for one in said)
     assert words in run.attrs["cautions"]
-    assert float(run.energy_residual) < 0.01  # which tells nothing
-    # and without the second look it says nothing of it
+    assert float(run.energy_residual) < 0.01  # which does not reveal the error
+    # no warning without the second look
     _, said = fast(system, motion, free_vibration=None, second_look=False)
     assert not any("not sure" in one for one in said)
 
@@ -122,7 +122,7 @@ def test_second_look_messages(base):
     angle = SYSTEM.setting.overturning_angle
     falling = {**FALLS, "peak_left": 0.0, "peak_right": angle}
     assert told(base, standing, standing) == []
-    # small impacts after the peak may differ, but not where the peak itself does
+    # small impacts after the peak may differ if the peak does not
     assert told(base, standing, {**standing, "impact_count": 99}) == []
     [other] = told(base, standing, {**standing, "impact_count": 99, "peak_right": 0.1006})
     assert "the verdict is not sure" in other

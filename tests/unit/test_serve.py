@@ -70,7 +70,7 @@ def test_page_shows_the_verdict_of_the_run(ask):
     assert verdict.startswith("Overturned")
     assert verdict in text
     assert "script-src 'self'" in headers["Content-Security-Policy"]
-    assert not re.search(r"https?://", text)  # nothing from elsewhere
+    assert not re.search(r"https?://", text)  # no external resources
     player = ask("/player?motion=sine_pulse&width=0.6&height=3&amplitude=6&frequency=1")
     assert player[0] == 200
     assert '<canvas id="scene"' in player[1]
@@ -158,7 +158,7 @@ def test_internal_error_is_reported_without_a_traceback(ask, server, monkeypatch
     text = ask("/outcome?width=1.01")[1]
     assert "please report it" in text
     assert "Zero" not in text
-    assert "ZeroDivisionError" in capsys.readouterr().err  # for whoever mends it
+    assert "ZeroDivisionError" in capsys.readouterr().err  # for debugging
     assert ask("/?" + "&".join(f"a{k}=1" for k in range(60)))[0] == 400
 
 

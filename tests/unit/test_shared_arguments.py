@@ -143,7 +143,7 @@ def test_analyses_have_the_shared_argument_names_and_defaults(function):
 
 
 def test_sweep_and_simulate_signatures_match_declarations():
-    """Both write their arguments out: one takes any further name, the other any outputs."""
+    """Both list their arguments explicitly: one takes any further name, the other any outputs."""
     of_sweep = inspect.signature(rf.sweep).parameters
     for name, one in declared_arguments(SweepArguments).items():
         assert of_sweep[name].default == one.default

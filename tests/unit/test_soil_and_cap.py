@@ -216,7 +216,7 @@ def test_mass_and_inertia_of_a_solid_cap():
         assert cap.inertia_at(5.0) == pytest.approx(inertia, rel=1e-14)
 
 
-# what is refused -----------------------------------------------------------------------------
+# refusals -----------------------------------------------------------------------------
 
 
 @pytest.mark.parametrize("bad", ["9 MN/m", "9e6 N/m", "9 MN/m^3", "9 N", "9 kg/m^2", "9 m", "9"])
@@ -380,7 +380,7 @@ def test_extreme_caps_are_refused_or_give_finite_statics(size):
 
 
 def test_block_and_cap_combine_mass_centre_and_inertia():
-    """Summed up over point masses that have the mass, the centre and the inertia of each part."""
+    """Sum over point masses with the mass, the centre and the inertia of each part."""
     block = rf.Block(width="2 m", height="6 m", mass="30 t", centre_of_mass=("2.5 m", "0.2 m"))
     cap = rf.CushionCap(height="0.8 m", mass="20 t", width="3 m")
     body = rf.System(block, cap, rf.WinklerSoil(**SOIL)).assembly.setting.body

@@ -94,7 +94,7 @@ def test_run_out_of_balance_warns_and_has_a_caution(monkeypatch):
 
 
 def test_fast_run_with_wrong_course_warns():
-    """Sub-steps of a tenth of the period, in a scene in which every impact multiplies errors."""
+    """Sub-steps of a tenth of the period, in a scene whose impacts multiply errors."""
     *_, scene = scenes("restraint and separation rules, finite and small", 4)
     with pytest.warns(SolverWarning, match="another course, which"):
         fast = scene.run("fast")
@@ -106,7 +106,7 @@ def test_fast_run_with_wrong_course_warns():
 
 @pytest.mark.parametrize("scale", [1.00001, 1.001, 1.01])
 def test_barely_rocking_block_does_not_warn(scale):
-    """Just beyond g b/h a few fixed steps hold all the motion there is."""
+    """Just beyond g b/h all motion takes place within a few fixed steps."""
     system = rf.System(rf.Block(width="1 m", height="4 m", mass="10 t"))
     motion = rf.GroundMotion.sine_pulse(f"{scale * 9.80665 / 4} m/s^2", "1 Hz")
     run = system.simulate(motion, free_vibration="2 s", accuracy="fast", outputs=None)

@@ -175,7 +175,7 @@ def test_event_body_is_the_body_whose_contact_changes(run):
 
 
 def test_overturning_of_a_lower_body_overturns_the_stack():
-    # a slender column under a squat block: that would need a far greater rotation itself
+    # a slender column under a squat block, whose own overturning angle is much greater
     squat = rf.Block(width="1 m", height="0.8 m", mass="2 t")
     column = rf.Block(width="1 m", height="6 m", mass="9 t")
     system = rf.System(rf.Stack(squat, column, interfaces=[JOINT]), GROUND)
@@ -185,7 +185,7 @@ def test_overturning_of_a_lower_body_overturns_the_stack():
     assert at_end[0] < 0.5 * float(run.overturning_angle)
     assert run.event_body[-1] == 1
     stands = system.simulate(PULSE, free_vibration="1 s", second_look=False)
-    angle = np.arctan2(0.5, (2.0 * 6.4 + 9.0 * 3.0) / 11.0)  # of both as one
+    angle = np.arctan2(0.5, (2.0 * 6.4 + 9.0 * 3.0) / 11.0)  # of both as one body
     share = float(stands.peak_body_rotation[1]) / angle
     assert float(stands.peak_relative_rotation) == pytest.approx(share, rel=1e-6)
     assert f" of body 1, a lower body {100.0 * share:.3g} % of its own;" in stands.attrs["verdict"]
@@ -277,7 +277,7 @@ def test_extreme_mass_ratios_have_finite_frequencies(masses):
     blocks = [rf.Block(width="1 m", height="2 m", mass=f"{one} t") for one in masses]
     pads = rf.TwoSpringSupport(frequency_ratio=20.0, damping_ratio=0.1)
     model = rf.System(rf.Stack(*blocks, interfaces=[pads, pads]), pads).setting.compile()
-    # of the body above by itself, whose pads bear it alone
+    # of the upper body alone on its pads
     alone = rf.System(blocks[0], pads).setting.compile()
     assert alone.fastest_frequency * (1.0 - 1e-9) <= model.fastest_frequency < np.inf
 

@@ -151,7 +151,7 @@ def test_histories_and_events_are_separate_tables(runs):
 
 
 def test_joined_histories_end_where_their_runs_end(runs):
-    """However they were joined: what only fills them up is no row."""
+    """Padding of joined runs is not a row, however they were joined."""
     bare = [one.drop_dims("event") for one in runs]
     joined = xr.concat(bare, "scale", data_vars="all", join="outer").assign_coords(scale=SCALES)
     table = rf.table(joined, "histories")
@@ -203,7 +203,7 @@ def test_frequencies_spectra_and_measures_become_tables():
 
 
 def test_variables_of_other_dimensions_have_separate_rows():
-    """Rows are added, and not multiplied by dimensions that have nothing to do with them."""
+    """Rows are added, not multiplied by unrelated dimensions."""
     labels = {"quantile": [0.1, 0.9], "scale": np.arange(5.0), "response_level": [0.1, 0.2, 0.3]}
     curves = xr.Dataset(
         {

@@ -29,7 +29,7 @@ def make_cap(**changed):
     return rf.CushionCap(**{"height": "1 m", "density": "2 t/m^3", "depth": "4 m", **changed})
 
 
-# every dimensional argument of the library: maker, name, words for it, unit, an accepted value
+# every dimensional argument: maker, name, its description, unit, an accepted value
 DIMENSIONAL = [
     (make_block, "width", "length", "m", "2 m"),
     (make_block, "height", "length", "m", "8 m"),
@@ -60,7 +60,7 @@ MUST_BE_POSITIVE = [
 
 @pytest.fixture(params=range(len(DIMENSIONAL)), ids=NAMES)
 def argument(request):
-    """Return one row of the table, whose value is accepted."""
+    """Return a row of the table."""
     maker, name, words, unit, good = DIMENSIONAL[request.param]
     maker(**{name: good})
     return maker, name, words, unit, good
@@ -147,7 +147,7 @@ def test_a_negative_damping_is_refused_and_a_zero_one_is_not():
     make_pads(damping_ratio=0)
 
 
-# traps, one by one -----------------------------------------------------------------------
+# single traps -----------------------------------------------------------------------
 
 
 @pytest.mark.parametrize(
