@@ -44,7 +44,7 @@ def edge(low=1.0, high=8.0):
     return 0.5 * (low + high)
 
 
-def pretended(overturns):
+def artificial_run(overturns):
     """Return a run whose verdict is a function of scene and plan; None means unfinished."""
 
     def run(system, plan):
@@ -55,7 +55,7 @@ def pretended(overturns):
     return run
 
 
-def planned(rtol=1e-4):
+def plan_of(rtol=1e-4):
     return plan_run(
         SYSTEM.assembly,
         PULSE,
@@ -70,5 +70,5 @@ def planned(rtol=1e-4):
 
 
 def certificate_of(overturns, rtol=1e-4):
-    run, plan = pretended(overturns), planned(rtol)
+    run, plan = artificial_run(overturns), plan_of(rtol)
     return certify(SYSTEM.assembly, plan, run(SYSTEM.assembly, plan), rf.Certification(), run)

@@ -11,22 +11,22 @@ from rockframe.solve.trajectory import Steps
 
 def along(ends, starts, inside=None, length=0.5, events=None):
     """Make steps of equal length; `starts` maps steps after an event to their first values."""
-    rows, shown = [], []
+    rows, values = [], []
     for step, end in enumerate(ends):
         if step in starts:
             rows.append([length * step, 0.0])
-            shown.append(starts[step])
+            values.append(starts[step])
         rows.append([length * (step + 1), length])
-        shown.append(end)
+        values.append(end)
     codes = np.zeros((len(rows), 2), dtype=np.int64)
     steps = Steps(np.array(rows), codes, width=0, exact=True)
-    shown = {"demand": np.array(shown)}
+    values = {"demand": np.array(values)}
 
     def straight(which):
-        start, end = shown["demand"][which - 1, None], shown["demand"][which, None]
+        start, end = values["demand"][which - 1, None], values["demand"][which, None]
         return {"demand": (start * (1.0 - FRACTIONS) + end * FRACTIONS).ravel()}
 
-    return AlongSteps(steps, shown, straight if inside is None else inside)
+    return AlongSteps(steps, values, straight if inside is None else inside)
 
 
 def demand(values):

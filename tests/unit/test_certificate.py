@@ -13,12 +13,12 @@ from unit.certified import (
     PADS,
     PULSE,
     SYSTEM,
+    artificial_run,
     certificate_of,
     certified,
     edge,
     falls,
-    planned,
-    pretended,
+    plan_of,
 )
 
 import rockframe as rf
@@ -122,7 +122,7 @@ def test_parameters_that_change_the_verdict_are_counted():
 
 
 def test_sensitivity_counts_lowered_and_raised_peaks():
-    run, plan = pretended(lambda *_: False), planned()
+    run, plan = artificial_run(lambda *_: False), plan_of()
 
     def lower(system, plan):
         peak = 0.02 if system.parts.pads.to_dict()["frequency_ratio"] > 20.01 else 0.1001
@@ -144,9 +144,9 @@ def test_nudged_scenes_preserve_options():
         "gravity": "3.7 m/s^2",
     }
     system = rf.System(BLOCK, PADS, cap, soil, **options)
-    kept = {name: value for name, value in system.to_dict().items() if name != "parts"}
+    preserved = {name: value for name, value in system.to_dict().items() if name != "parts"}
     for words, scene_at in parameters(system.assembly):
-        assert kept.items() <= scene_at(1e-3).to_dict().items(), words
+        assert preserved.items() <= scene_at(1e-3).to_dict().items(), words
 
 
 def test_nudges_that_make_parts_incompatible_are_skipped():
@@ -212,13 +212,13 @@ def test_overturning_island_near_high_peaks_is_found():
         fell = left < 0.0
         return RunSummary(fell, 0.1, (1.0, 1.0) if fell else (5.0 * left,), 1.0, 0, 0.001)
 
-    plan = planned()
+    plan = plan_of()
     found = certify(SYSTEM.assembly, plan, run(SYSTEM.assembly, plan), rf.Certification(), run)
     assert found.margin == pytest.approx(middle - half, rel=2.0 * RESOLUTION)
     assert found.margin <= middle - half
 
 
-def certified_on_courses_of_their_own(**options):
+def certified_on_diverging_courses(**options):
     """Certify standing runs, each of which takes a different course beyond a certain scale."""
     rng = np.random.default_rng(0)
 
@@ -227,12 +227,12 @@ def certified_on_courses_of_their_own(**options):
         course = (1.0, rng.uniform(0.0, 1.0) if off > 0.1 else 0.5)
         return RunSummary(False, 0.1, (0.5,), math.nan, 0, 0.001, course)
 
-    plan, asked = planned(), rf.Certification(**options)
-    return certify(SYSTEM.assembly, plan, run(SYSTEM.assembly, plan), asked, run)
+    plan, settings = plan_of(), rf.Certification(**options)
+    return certify(SYSTEM.assembly, plan, run(SYSTEM.assembly, plan), settings, run)
 
 
 def test_margin_ends_where_the_course_is_unresolved():
-    found = certified_on_courses_of_their_own()
+    found = certified_on_diverging_courses()
     assert 0.09 < found.margin < 0.12
     assert math.isnan(found.flip)
     assert found.robust
@@ -242,7 +242,7 @@ def test_margin_ends_where_the_course_is_unresolved():
 
 @pytest.mark.long
 def test_more_runs_do_not_reduce_the_margin():
-    found, more = certified_on_courses_of_their_own(), certified_on_courses_of_their_own(runs=400)
+    found, more = certified_on_diverging_courses(), certified_on_diverging_courses(runs=400)
     assert 200 < more.runs <= 400
     assert more.margin >= found.margin
 
@@ -255,11 +255,11 @@ def test_unresolved_course_near_the_run_reports_number_of_runs():
         course = (1.0, rng.uniform(0.0, 1.0) if off > 0.004 else 0.5)
         return RunSummary(False, 0.1, (0.5,), math.nan, 0, 0.001, course)
 
-    plan = planned()
+    plan = plan_of()
     found = certify(SYSTEM.assembly, plan, run(SYSTEM.assembly, plan), rf.Certification(), run)
     assert found.margin < 0.01
-    told = "Near the boundary: the body stands, but 200 runs were too few to resolve"
-    assert told in found.sentence
+    sentence = "Near the boundary: the body stands, but 200 runs were too few to resolve"
+    assert sentence in found.sentence
 
 
 def test_uncertain_peak_near_overturning_is_not_converged():
@@ -267,7 +267,7 @@ def test_uncertain_peak_near_overturning_is_not_converged():
         left = 0.01 if plan.accuracy.rtol > 1e-5 else 0.004
         return RunSummary(False, 0.1, (left,), math.nan, 0, 0.001)
 
-    plan = planned()
+    plan = plan_of()
     found = certify(SYSTEM.assembly, plan, run(SYSTEM.assembly, plan), rf.Certification(), run)
     assert not found.converged
     assert "its peak rotation is uncertain by" in found.sentence

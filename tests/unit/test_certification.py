@@ -18,7 +18,7 @@ from unit.certified import (
     certificate_of,
     certified,
     edge,
-    planned,
+    plan_of,
 )
 
 import rockframe as rf
@@ -50,10 +50,10 @@ def combinations():
     for course, base, moving in itertools.product(
         ("stop", "continue"), (stands, falls, back), (False, True)
     ):
-        plan = replace(planned(), stop_at_overturning=course == "stop")
+        plan = replace(plan_of(), stop_at_overturning=course == "stop")
         other = stands if base.overturned else falls
-        near_it = replace(base, clearances=tuple(0.5 * one for one in base.clearances))
-        finer = [base, other, lost, near_it]
+        near_flip = replace(base, clearances=tuple(0.5 * one for one in base.clearances))
+        finer = [base, other, lost, near_flip]
         nudged = [
             Scan(1e-3, None, None, followed=True, tried=same),
             Scan(5e-4, 5e-4, other, followed=True, tried=same),
@@ -71,9 +71,9 @@ def combinations():
                 ended = None if flip is None else other
                 along.append(Scan(margin, signed, ended, followed=followed, tried=same))
         for one, parameter, scaled in itertools.product(finer, nudged, along):
-            for wanted in (rf.Certification(), rf.Certification(nudge=0.1, reach=0.5)):
+            for settings in (rf.Certification(), rf.Certification(nudge=0.1, reach=0.5)):
                 yield Certificate(
-                    wanted, plan, replace(base, in_motion=moving), [("means", one)],
+                    settings, plan, replace(base, in_motion=moving), [("means", one)],
                     [("parameter", parameter)], scaled,
                 )  # fmt: skip
 
@@ -89,9 +89,9 @@ def test_certificate_sentence_matches_its_numbers():
         scaled = f"scaled {'up' if flip > 1.0 else 'down'} by {100.0 * abs(flip - 1.0):.3g} %"
         nearest = f"with another verdict is {flip:.6g}."
         # a known flip is stated once, an unknown one never
-        said = (scaled in text) + (nearest in text)
-        assert said == (0 if math.isnan(flip) else 1), text
-        assert ("another verdict is" in text) + ("scaled" in text) == said, text
+        count = (scaled in text) + (nearest in text)
+        assert count == (0 if math.isnan(flip) else 1), text
+        assert ("another verdict is" in text) + ("scaled" in text) == count, text
         doubt = text.startswith("Near the boundary: ")
         assert doubt or (found.converged and found.robust), text
         assert doubt != (" also with " in text)
@@ -115,8 +115,8 @@ def test_certificate_sentence_matches_its_numbers():
 def test_reach_smaller_than_the_nudge_is_sufficient():
     same = {scale: RunSummary(False, 0.1, (0.5,)) for scale in (-0.01, 0.01)}
     along = Scan(0.01, None, None, followed=True, tried=same)
-    wanted = rf.Certification(nudge=0.1, reach=0.01)
-    found = Certificate(wanted, planned(), same[0.01], along=along)
+    settings = rf.Certification(nudge=0.1, reach=0.01)
+    found = Certificate(settings, plan_of(), same[0.01], along=along)
     assert found.robust
     assert found.sentence.startswith("The body stands also with")
 
@@ -263,10 +263,12 @@ def test_continued_run_is_compared_with_continued_runs():
 def test_barely_sufficient_substeps_are_certified():
     pads = rf.TwoSpringSupport(frequency_ratio=324.57, damping_ratio=0.1)
     system = rf.System(BLOCK, pads)
-    given = rf.Accuracy(substeps=4)
+    accuracy = rf.Accuracy(substeps=4)
     with pytest.raises(SolverError, match="too few"):
-        rf.System(BLOCK, pads.with_scaled("frequency_ratio", 1.001)).simulate(PULSE, accuracy=given)
-    run = certified(system=system, accuracy=given)
+        rf.System(BLOCK, pads.with_scaled("frequency_ratio", 1.001)).simulate(
+            PULSE, accuracy=accuracy
+        )
+    run = certified(system=system, accuracy=accuracy)
     assert "larger or smaller" in run.attrs["certificate"]
 
 
@@ -295,10 +297,10 @@ def test_every_scene_can_be_certified(parts, coupling, tmp_path):
         xr.testing.assert_identical(stored[list(NAMES)].drop_attrs(), run[list(NAMES)].drop_attrs())
 
 
-@pytest.mark.parametrize("given", [1, "yes", None, 0.01])
-def test_invalid_certify_option_is_refused(given):
+@pytest.mark.parametrize("value", [1, "yes", None, 0.01])
+def test_invalid_certify_option_is_refused(value):
     with pytest.raises(ComponentError, match="must be True, False, 'proved' or a Certification"):
-        SYSTEM.simulate(PULSE, certify=given)
+        SYSTEM.simulate(PULSE, certify=value)
 
 
 @pytest.mark.parametrize(

@@ -43,12 +43,12 @@ def test_circolare_reproduces_worked_example_of_a_wall():
 
 
 def test_damage_limit_state_compares_activation_acceleration():
-    for acceleration, stands in ((0.8, True), (0.83, False)):
+    for acceleration, passes in ((0.8, True), (0.83, False)):
         check = rf.codes.circolare_2019(
             LOW, spectrum(0.05, acceleration), confidence_factor=1, limit_state="SLD",
             elastic_period="0.5 s",
         )  # fmt: skip
-        assert check.passed == {"kinematic, SLD": stands}
+        assert check.passed == {"kinematic, SLD": passes}
         assert check.value("S_e(T_0)") == pytest.approx(acceleration)
     motions = rf.codes.circolare_2019(LOW, PULSES, limit_state="SLD", elastic_period="0.5 s")
     found = rf.response_spectrum(PULSES, ["0.5 s"], 0.05).pseudo_spectral_acceleration
@@ -60,10 +60,10 @@ def test_circolare_includes_overburden_mass():
     floor = rf.Load(at=("-0.15 m", "6 m"), moving_mass="2 t")
     system = rf.System(WALL, rf.RigidGround(), floor, gravity="9.81 m/s^2")
     check = rf.codes.circolare_2019(system, spectrum(), confidence_factor=1)
-    beside, level, square = 5.7 * 0.25 + 2 * 0.1, 5.7 * 3.0 + 2 * 6.0, 5.7 * 9.0 + 2 * 36.0
-    assert check.value("alpha_0") == pytest.approx(beside / level)
+    moment, level, square = 5.7 * 0.25 + 2 * 0.1, 5.7 * 3.0 + 2 * 6.0, 5.7 * 9.0 + 2 * 36.0
+    assert check.value("alpha_0") == pytest.approx(moment / level)
     assert check.value("e*") == pytest.approx(level**2 / (7.7 * square))
-    assert check.value("d_0") == pytest.approx(beside * square / level**2)
+    assert check.value("d_0") == pytest.approx(moment * square / level**2)
     with pytest.raises(ComponentError, match="which may carry loads that are masses"):
         rf.codes.circolare_2019(
             rf.System(WALL, rf.Load(at=("0 m", "6 m"), vertical="1 kN")), spectrum()
@@ -123,7 +123,7 @@ def test_displacement_to_the_stronger_side_is_not_capped():
 
 
 @pytest.mark.parametrize(
-    ("given", "words"),
+    ("scene", "words"),
     [
         ((rf.System(WALL), spectrum(0.05)), "must be of a damping ratio of 0.08, got 0.05"),
         (("wall.toml", spectrum()), "system needs a System"),
@@ -135,9 +135,9 @@ def test_displacement_to_the_stronger_side_is_not_capped():
         ),
     ],
 )
-def test_scenes_that_cannot_be_checked_are_refused(given, words):
+def test_scenes_that_cannot_be_checked_are_refused(scene, words):
     with pytest.raises(ComponentError, match=words):
-        rf.codes.circolare_2019(*given)
+        rf.codes.circolare_2019(*scene)
 
 
 def test_invalid_check_arguments_are_refused():

@@ -34,12 +34,12 @@ def row(runs, *scales):
     return [runs[scale] for scale in scales]
 
 
-def of_one_run(dataset):
+def run_attributes(dataset):
     return RUN_ATTRIBUTES & set(dataset.attrs)
 
 
 def test_run_attributes_list_matches_attributes_that_differ_between_runs():
-    asked = {"history", "run_json", "motion_sha256", "motion_json", "motion_history"}
+    optional = {"history", "run_json", "motion_sha256", "motion_json", "motion_history"}
     with pytest.warns(SolverWarning):
         cut = run(STANDS, accuracy=rf.Accuracy(rtol=1e-7, max_steps=40), certify=True)
     others = [
@@ -47,38 +47,42 @@ def test_run_attributes_list_matches_attributes_that_differ_between_runs():
         run(FALLS, accuracy=1e-7, certify=rf.Certification(runs=61)),
         cut,
     ]
-    told = [set(other.attrs) for other in others]
-    assert told[0] == told[1] == told[2]
+    attributes = [set(other.attrs) for other in others]
+    assert attributes[0] == attributes[1] == attributes[2]
     differing = {
         name
-        for name in told[0]
+        for name in attributes[0]
         if any(not np.array_equal(others[0].attrs[name], other.attrs[name]) for other in others)
     }
     settings = {"accuracy", "certificate_nudge", "certificate_reach", "certificate_resolution"}
     # no run is proved or has fixed steps, and no scene is a stack on rigid bases
-    of_stacks = {"impacts_of_several_modes", "impacts_of_no_mode", "corners_held_without_pressing"}
-    of_proofs = {"proof", "proof_bits", "proof_verdict"}
-    not_here = {"solver_substeps"} | of_stacks | of_proofs
-    assert differing - asked - settings == RUN_ATTRIBUTES - not_here
+    only_of_stacks = {
+        "impacts_of_several_modes",
+        "impacts_of_no_mode",
+        "corners_held_without_pressing",
+    }
+    only_of_proofs = {"proof", "proof_bits", "proof_verdict"}
+    absent = {"solver_substeps"} | only_of_stacks | only_of_proofs
+    assert differing - optional - settings == RUN_ATTRIBUTES - absent
 
 
 def test_concat_never_retains_attributes_of_one_run(runs):
     """None, all or some runs overturn; joined in one step or two, also through files."""
     rows = [row(runs, 2.0, STANDS), row(runs, FALLS, 10.0), row(runs, STANDS, FALLS)]
     for chosen in (*rows, [runs[STANDS]], [runs[STANDS]] * 2, [runs[FALLS]] * 2):
-        assert not of_one_run(rf.concat(chosen, "scale"))
+        assert not run_attributes(rf.concat(chosen, "scale"))
     for chosen in itertools.permutations(rows):
         nested = rf.concat([rf.concat(part, "scale") for part in chosen], "case")
-        assert not of_one_run(nested)
+        assert not run_attributes(nested)
         assert nested.sizes == {"case": 3, "scale": 2}
-        whole = [one.overturned.item() for part in chosen for one in part]
-        assert nested.overturned.values.ravel().tolist() == whole
+        overturned = [one.overturned.item() for part in chosen for one in part]
+        assert nested.overturned.values.ravel().tolist() == overturned
         assert nested.overturned.dtype == bool
         deeper = rf.concat([nested, nested], "system")
-        assert not of_one_run(deeper)
+        assert not run_attributes(deeper)
         longer = rf.concat([nested, nested], "case")
         assert longer.sizes == {"case": 6, "scale": 2}
-        assert not of_one_run(longer)
+        assert not run_attributes(longer)
 
 
 def test_concat_drops_run_attributes_left_by_xarray(runs):
@@ -97,7 +101,7 @@ def test_concat_drops_run_attributes_left_by_xarray(runs):
     fault = xr.concat(plain, "case", data_vars="all", combine_attrs="drop_conflicts")
     assert fault.attrs["overturned"] == 0
     assert fault.overturned.any()
-    assert not of_one_run(rf.concat(plain, "case"))
+    assert not run_attributes(rf.concat(plain, "case"))
 
 
 def test_xarray_concat_drops_conflicting_run_attributes(runs):
@@ -166,9 +170,9 @@ def test_different_motions_become_a_coordinate(runs, tmp_path):
 
 def test_labels_of_quantities_are_refused(runs):
     labels = pint.get_application_registry().Quantity([3.0, 9.0], "m/s^2")
-    for given in (labels, list(labels)):
+    for quantities in (labels, list(labels)):
         with pytest.raises(SchemaError, match=r"labels with a unit come as xr\.DataArray"):
-            rf.concat(row(runs, STANDS, FALLS), "amplitude", given)
+            rf.concat(row(runs, STANDS, FALLS), "amplitude", quantities)
 
 
 def test_labels_may_have_a_unit(runs):
@@ -275,9 +279,9 @@ def test_restrainers_missing_from_a_run_become_gaps(tmp_path):
         runs = [tied("west"), tied("west", "east"), tied("east")]
     joined = rf.concat(runs, histories=True)
     assert joined.restrainer.values.tolist() == ["west", "east"]
-    there = [[True, False], [True, True], [False, True]]
-    assert joined.peak_restrainer_force.notnull().values.tolist() == there
-    assert joined.restrainer_state.notnull().all("time").values.tolist() == there
+    present = [[True, False], [True, True], [False, True]]
+    assert joined.peak_restrainer_force.notnull().values.tolist() == present
+    assert joined.restrainer_state.notnull().all("time").values.tolist() == present
     assert joined.restrainer_state.dtype == joined.restrainer_state.flag_values.dtype == float
     joined.to_netcdf(tmp_path / "joined.nc")
     xr.testing.assert_identical(xr.load_dataset(tmp_path / "joined.nc"), joined)
@@ -291,8 +295,8 @@ def test_joined_sweeps_with_gaps_equal_the_whole_sweep(tmp_path):
         return rf.System(rf.Stack(*[BLOCK] * count, interfaces=[joint] * (count - 1)), joint)
 
     def swept(*counts):
-        asked = {"accuracy": "fast", "outputs": ["rotation"], "duration": "0.2 s"}
-        return rf.sweep(drums, PULSE, count=counts, **asked)
+        options = {"accuracy": "fast", "outputs": ["rotation"], "duration": "0.2 s"}
+        return rf.sweep(drums, PULSE, count=counts, **options)
 
     with plainly():
         parts, whole = [swept(2), swept(3, 1)], swept(2, 3, 1)

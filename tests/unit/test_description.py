@@ -68,8 +68,8 @@ class TestDescription:
         rate = math.sqrt((springs - 5e4 * 9.80665 * 4.0) / inertia)
         text = rf.System(eccentric, part).describe()
         ratio = dashpots / (2.0 * inertia * rate)
-        told = re.search(r"omega_r = (\S+) rad/s .*?damping ratio (\S+)", text, re.DOTALL)
-        assert told.groups() == (f"{rate:.6g}", f"{ratio:.6g}")
+        match = re.search(r"omega_r = (\S+) rad/s .*?damping ratio (\S+)", text, re.DOTALL)
+        assert match.groups() == (f"{rate:.6g}", f"{ratio:.6g}")
 
     def test_describes_rigid_ground(self):
         text = rf.System(block()).describe()

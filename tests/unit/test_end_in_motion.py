@@ -120,9 +120,9 @@ def test_end_in_motion_warning_follows_the_energy_bound(parts, share):
 def test_sweep_warns_of_cases_ending_in_motion():
     with pytest.warns(ModelWarning, match=STILL_MOVING):
         runs = rf.sweep(rf.System(BLOCK), PULSE, scale=[0.2, 1.0], progress=False)
-    said = runs.message.to_numpy().ravel()
-    assert said[0] == "none"
-    assert STILL_MOVING in said[1]
+    messages = runs.message.to_numpy().ravel()
+    assert messages[0] == "none"
+    assert STILL_MOVING in messages[1]
 
 
 def test_critical_scale_warns_of_runs_ending_in_motion():
@@ -179,12 +179,12 @@ def test_overturning_energy_without_equilibrium_uses_the_reached_range(monkeypat
     setting = pedestal("0.5 m").assembly.setting
     whole, held = setting.overturning_energy, type(setting).curve
 
-    def gives_way(self, rotations):
+    def loses_equilibrium(self, rotations):
         far = 0.5 * setting.overturning_angle
         states = zip(rotations, held(self, rotations), strict=True)
         return [None if abs(rotation) > far else state for rotation, state in states]
 
-    monkeypatch.setattr(type(setting), "curve", gives_way)
+    monkeypatch.setattr(type(setting), "curve", loses_equilibrium)
     on_the_way = pedestal("0.5 m").assembly.setting.overturning_energy
     assert 0.5 * whole < on_the_way < whole
 

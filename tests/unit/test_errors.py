@@ -129,12 +129,12 @@ def test_notebooks_show_the_line_that_was_wrong_and_no_other(misuse, monkeypatch
     monkeypatch.setitem(sys.modules, "IPython", console)
     with pytest.raises(RockframeError) as caught:
         misuse()
-    here = "test_notebooks_show_the_line_that_was_wrong_and_no_other"
+    this_test = "test_notebooks_show_the_line_that_was_wrong_and_no_other"
     name, *frames = caught.value._render_traceback_()
     assert name == caught.type.__name__
-    assert frames == [here, "<lambda>"]
-    whole = [one.name for one in caught.traceback]
-    assert len(whole) > 2  # the complete traceback is still available
+    assert frames == [this_test, "<lambda>"]
+    traceback_names = [one.name for one in caught.traceback]
+    assert len(traceback_names) > 2  # the complete traceback is still available
 
 
 def test_ipython_shows_only_the_wrong_line():

@@ -115,7 +115,7 @@ REFUSED = {
 }
 
 
-def write_others():
+def write_foreign_files():
     """Create files that rockframe has not written, and links to its inputs."""
     xr.Dataset({"x": ("t", [1.0])}, attrs={"source": "my own"}).to_netcdf("mine.nc")
     for ending in ("csv", "png", "svg", "pdf", "html"):
@@ -140,12 +140,12 @@ def write_others():
 @pytest.mark.wide
 @pytest.mark.parametrize("words", REFUSED)
 def test_commands_do_not_replace_inputs_or_foreign_files(words, folder, capsys):
-    write_others()
+    write_foreign_files()
     before = contents(folder)
     assert main(words.split()) == 2
-    told = capsys.readouterr().err
-    assert REFUSED[words] in told
-    assert "Traceback" not in told
+    stderr = capsys.readouterr().err
+    assert REFUSED[words] in stderr
+    assert "Traceback" not in stderr
     assert contents(folder) == before
 
 
@@ -170,12 +170,14 @@ REPLACED = (
 def test_commands_replace_own_files_and_others_on_request(words, folder):
     for ending in ("nc", "csv", "png", "html"):
         Path(f"mine.{ending}").write_text("mine")
-    given = words.split()
-    named = [given[k + 1] for k, word in enumerate(given) if word in ("-o", "--csv", "--picture")]
+    arguments = words.split()
+    named = [
+        arguments[k + 1] for k, word in enumerate(arguments) if word in ("-o", "--csv", "--picture")
+    ]
     for name in named:
         os.utime(name, (0, 0))
         Path(name).chmod(0o640)
-    assert main(given) == 0
+    assert main(arguments) == 0
     for name in named:
         assert Path(name).stat().st_mtime > 0
         assert Path(name).stat().st_mode & 0o777 == 0o640
@@ -183,14 +185,14 @@ def test_commands_replace_own_files_and_others_on_request(words, folder):
 
 
 def test_functions_do_not_replace_foreign_files(folder):
-    write_others()
+    write_foreign_files()
     run = xr.open_dataset("run.nc")
     moving = rf.plot.animation(run, frames_per_second=2)
     record, odd = rf.GroundMotion.read("record.AT2"), xr.open_dataset("odd.html")
     Path("mine.AT2").write_text("mine")
     Path("mine.gif").write_text("mine")
     before = contents(folder)
-    for write, given, words in (
+    for write, arguments, words in (
         (rf.report, (run, "run.nc"), "ends in .html"),
         (rf.report, (run, "mine.html"), "not a report that rockframe wrote"),
         (rf.report, (run, "none/r.html"), "there is no folder 'none'"),
@@ -205,13 +207,13 @@ def test_functions_do_not_replace_foreign_files(folder):
         (run.rockframe.player, ("run.html",), "not a player"),
     ):
         with pytest.raises(FileError, match=words):
-            write(*given)
-    for write, given in (
+            write(*arguments)
+    for write, arguments in (
         (rf.report, (odd, "odd.html")),
         (record.scaled(2.0).to_at2, ("record.AT2",)),
     ):
         with pytest.raises(FileError, match="this file is an input"):
-            write(*given, overwrite=True)
+            write(*arguments, overwrite=True)
     assert contents(folder) == before
     run.close()
     odd.close()
@@ -267,8 +269,8 @@ def test_output_file_survives_closed_or_full_stdout(closed, folder):
         assert (done.returncode, "the output cannot be written" in done.stderr) == (2, True)
     else:
         assert (done.returncode, done.stderr) == (0, "")
-    with xr.open_dataset(folder / "new.nc") as kept:
-        assert "verdict" in kept.attrs
+    with xr.open_dataset(folder / "new.nc") as stored:
+        assert "verdict" in stored.attrs
 
 
 WRITES = {"write_text", "write_bytes", "to_netcdf", "to_csv", "savefig", "savetxt", "save"}

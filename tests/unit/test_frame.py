@@ -397,9 +397,9 @@ def test_centre_of_mass_follows_from_the_members():
 
 def test_regular_frame_centre_of_mass_defaults_to_the_middle():
     regular = EXAMPLES["regular"]
-    told = FrameEquivalent.from_members(**REGULAR, centre_of_mass="middle")
-    assert told == regular
-    assert told.si == regular.si
+    explicit = FrameEquivalent.from_members(**REGULAR, centre_of_mass="middle")
+    assert explicit == regular
+    assert explicit.si == regular.si
     assert (regular.si.centre_height, regular.si.eccentricity) == (4.5, 0.0)
     own = FrameEquivalent.from_members(**REGULAR, centre_of_mass="members")
     listed = FrameEquivalent.from_members(regular.members, width="4 m", height="9 m")

@@ -95,8 +95,8 @@ def test_equal_storeys_may_be_listed_individually():
 
 
 def test_plan_and_columns_default_to_square():
-    told = FrameEquivalent.from_members(**REGULAR, depth="4 m", column_depth="0.25 m")
-    assert told == EXAMPLES["regular"]
+    explicit = FrameEquivalent.from_members(**REGULAR, depth="4 m", column_depth="0.25 m")
+    assert explicit == EXAMPLES["regular"]
     thick = FrameEquivalent.from_members(
         **REGULAR, slab_thickness="12 cm", infill_thickness="0.15 m"
     )

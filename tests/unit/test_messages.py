@@ -44,7 +44,7 @@ def system():
     return rf.System(block(), pads())
 
 
-ASKED = {
+MISTAKES = {
     "a system where a comparison is needed": (
         lambda: rf.recommend(system(), 0.1),
         SchemaError,
@@ -123,9 +123,9 @@ ASKED = {
 }
 
 
-@pytest.mark.parametrize("asked", ASKED)
-def test_error_message_suggests_the_correct_usage(asked):
-    call, kind, words = ASKED[asked]
+@pytest.mark.parametrize("mistake", MISTAKES)
+def test_error_message_suggests_the_correct_usage(mistake):
+    call, kind, words = MISTAKES[mistake]
     with pytest.raises(kind) as caught:
         call()
     for each in words:
@@ -166,9 +166,9 @@ def test_number_and_unit_pairs_are_quantities():
 
 
 def test_contradictory_depths_warn():
-    def soil(depth, **given):
+    def soil(depth, **arguments):
         return rf.WinklerSoil.from_subgrade_modulus(
-            "20 MN/m^3", depth=depth, damping_ratio=0.2, **given
+            "20 MN/m^3", depth=depth, damping_ratio=0.2, **arguments
         )
 
     def frame(depth):
@@ -221,10 +221,10 @@ def test_unwritable_cache_folder_is_logged_once(tmp_path, monkeypatch, caplog):
         own_entries.add_one(values)
         own_entries.add_two(values)
     assert values.tolist() == [3.0]
-    told = [one.getMessage() for one in caplog.records]
-    assert len(told) == 1
-    assert str(taken) in told[0]
-    assert "ROCKFRAME_CACHE_DIR" in told[0]
+    messages = [one.getMessage() for one in caplog.records]
+    assert len(messages) == 1
+    assert str(taken) in messages[0]
+    assert "ROCKFRAME_CACHE_DIR" in messages[0]
 
 
 PADS = rf.TwoSpringSupport(frequency_ratio=40, damping_ratio=0.1)
@@ -304,10 +304,12 @@ TAKING |= {
 
 def _last_argument(function):
     """Return a named argument, or None if the function takes any name."""
-    given = signature(function).parameters.values()
-    if any(one.kind is one.VAR_KEYWORD for one in given):
+    parameters = signature(function).parameters.values()
+    if any(one.kind is one.VAR_KEYWORD for one in parameters):
         return None
-    named = [one.name for one in given if one.kind in (one.KEYWORD_ONLY, one.POSITIONAL_OR_KEYWORD)]
+    named = [
+        one.name for one in parameters if one.kind in (one.KEYWORD_ONLY, one.POSITIONAL_OR_KEYWORD)
+    ]
     return next((one for one in reversed(named) if len(one) > 4), None)
 
 
@@ -323,7 +325,7 @@ def test_every_function_answers_a_misspelt_argument(name):
 def test_misspelt_keys_of_suites_and_examples_get_a_suggestion():
     suite = rf.MotionSuite({"first": SHAKING, "second": SHAKING.scaled(2.0)})
     assert "frist" not in suite
-    for given, words in (
+    for key, words in (
         (lambda: suite["frist"], "was 'first' meant?"),
         (lambda: suite.select(magnitud=(6, 8)), "was 'magnitude' meant?"),
         (lambda: rf.GroundMotion.example("loma-preta"), "was 'loma-prieta' meant?"),
@@ -335,5 +337,5 @@ def test_misspelt_keys_of_suites_and_examples_get_a_suggestion():
         ),
     ):
         with pytest.raises((KeyError, rf.errors.RockframeError)) as caught:
-            given()
+            key()
         assert words in str(caught.value)

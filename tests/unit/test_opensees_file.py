@@ -50,8 +50,8 @@ def test_opensees_model_matches_the_system(base, dashpots, tmp_path):
     system = rf.System(BLOCK, BASES[base], restraint="centre")
     both = PULSE.with_vertical(PULSE.scaled(0.5))
     found = written(system, both, tmp_path, free_vibration="1 s", springs=10, dashpots=dashpots)
-    given, ops = found["PARAMETERS"], Recorder()
-    middle, above, top = found["build"](ops, given)
+    parameters, ops = found["PARAMETERS"], Recorder()
+    middle, above, top = found["build"](ops, parameters)
     places = {tag: np.array(place) for tag, *place in ops.of("node")}
     masses = {tag: mass for tag, mass, _ in ops.of("mass")}
     assert min(masses.values()) > 0.0
@@ -83,8 +83,8 @@ def test_opensees_model_matches_the_system(base, dashpots, tmp_path):
     np.testing.assert_array_equal(across, both.si.horizontal.samples)
     np.testing.assert_array_equal(up, both.si.vertical.samples)
     run = system.simulate(both, free_vibration="1 s", output_step="0.01 s")
-    np.testing.assert_allclose(given["rotation"], run.rotation, rtol=1e-8, atol=1e-30)
-    assert given["peak"] == run.peak_rotation.item()
+    np.testing.assert_allclose(parameters["rotation"], run.rotation, rtol=1e-8, atol=1e-30)
+    assert parameters["peak"] == run.peak_rotation.item()
     # every node has at least two bars, or is the middle of the base
     ends = [end for call in ops.of("element") if call[0] == "corotTruss" for end in call[2:4]]
     ground = {call[2] for call in springs}
@@ -132,12 +132,12 @@ def test_rotation_at_the_final_unaligned_time_is_not_exported(tmp_path):
     """A run that overturns ends between two samples; OpenSees continues to the next."""
     system = rf.System(BLOCK, PADS, restraint="centre")
     strong = PULSE.scaled(3.0)
-    given = written(system, strong, tmp_path, free_vibration="3 s")["PARAMETERS"]
+    parameters = written(system, strong, tmp_path, free_vibration="3 s")["PARAMETERS"]
     run = system.simulate(strong, free_vibration="3 s", output_step="0.01 s", outputs=())
     assert run.overturned
-    assert given["outputs"] == run.sizes["time"]
-    assert given["rotation"].size == run.sizes["time"] - 1
-    np.testing.assert_allclose(given["rotation"], run.rotation[:-1], rtol=1e-8, atol=1e-30)
+    assert parameters["outputs"] == run.sizes["time"]
+    assert parameters["rotation"].size == run.sizes["time"] - 1
+    np.testing.assert_allclose(parameters["rotation"], run.rotation[:-1], rtol=1e-8, atol=1e-30)
 
 
 def differences(system, motion, tmp_path, **options):

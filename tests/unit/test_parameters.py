@@ -80,9 +80,9 @@ def test_parameters_are_readable_as_attributes(part, name, value):
         assert found == value
         assert type(found) is type(value) or name == "separation"
         return
-    wanted = UNIT.Quantity(value)
+    expected = UNIT.Quantity(value)
     assert isinstance(found, UNIT.Quantity)
-    assert found.m_as(wanted.units) == pytest.approx(wanted.magnitude, rel=1e-14)
+    assert found.m_as(expected.units) == pytest.approx(expected.magnitude, rel=1e-14)
 
 
 def test_storey_heights_may_be_listed():
@@ -98,7 +98,7 @@ def test_storey_heights_may_be_listed():
 
 
 @pytest.mark.parametrize(
-    ("part", "changes", "gone"),
+    ("part", "changes", "cleared"),
     [
         (PADS, {"damping_ratio": 0.2}, ()),
         (PADS, {"frequency_ratio": 20}, ("stiffness",)),
@@ -116,10 +116,10 @@ def test_storey_heights_may_be_listed():
         (TILTED, {"angular_velocity": "1 rad/s"}, ()),
     ],
 )
-def test_a_part_is_changed_by_copying(part, changes, gone):
+def test_a_part_is_changed_by_copying(part, changes, cleared):
     before = part.to_dict()
     changed = part.replace(**changes)
-    arguments = {name: value for name, value in before.items() if name not in ("type", *gone)}
+    arguments = {name: value for name, value in before.items() if name not in ("type", *cleared)}
     assert changed == type(part)(**{**arguments, **changes})
     assert changed != part
     assert part.to_dict() == before

@@ -123,9 +123,9 @@ def test_a_run_shows_each_restrainer(tmp_path):
     assert imbalance(found) < 1e-8
     assert float(found.energy_residual) < 1e-8
     found.to_netcdf(tmp_path / "tied.nc")
-    with xr.open_dataset(tmp_path / "tied.nc") as kept:
-        assert kept.restrainer.values.tolist() == ["upper", "restrainer 2"]
-        assert rf.System.from_dataset(kept).parts.links == (TIE, PRELOADED)
+    with xr.open_dataset(tmp_path / "tied.nc") as stored:
+        assert stored.restrainer.values.tolist() == ["upper", "restrainer 2"]
+        assert rf.System.from_dataset(stored).parts.links == (TIE, PRELOADED)
 
 
 def test_mirrored_restrainers_give_the_mirrored_response():
@@ -335,7 +335,7 @@ def test_restrainer_axes_use_identifiers_and_accept_booleans(tmp_path):
 )
 def test_zero_or_infinite_restrainer_values_equal_omitted_ones(base, one, other):
     tie = TIE.replace(slack=None, strength=None)
-    runs = [run(BLOCK, base, tie.replace(**given)) for given in (one, other)]
+    runs = [run(BLOCK, base, tie.replace(**changes)) for changes in (one, other)]
     np.testing.assert_allclose(runs[0].rotation, runs[1].rotation, rtol=0.0, atol=1e-13)
     assert list(runs[0].event_kind) == list(runs[1].event_kind)
 
@@ -397,14 +397,14 @@ def test_ties_add_stored_energy_to_overturning_energy_of_a_mixed_stack():
     weight = 2e3 * free.gravity
     assert free.overturning_energy == pytest.approx(weight * (math.hypot(0.3, 1.0) - 1.0), rel=1e-9)
     # rotating about its left corner, the left face moves away from the tie's other point
-    angle, given = math.atan2(0.3, 1.0), np.array([-0.3, 1.0]) - np.array([-0.6, -0.5])
+    angle, tie_vector = math.atan2(0.3, 1.0), np.array([-0.3, 1.0]) - np.array([-0.6, -0.5])
 
     def stored(side):
         pivot = np.array([0.3 * side, 0.0])
         turn = np.array([[math.cos(angle), side * math.sin(angle)],
                          [-side * math.sin(angle), math.cos(angle)]])  # fmt: skip
         now = pivot + turn @ (np.array([-0.3, 1.0]) - pivot) - np.array([-0.6, -0.5])
-        return 0.5 * 2e3 * (math.hypot(*now) - math.hypot(*given)) ** 2
+        return 0.5 * 2e3 * (math.hypot(*now) - math.hypot(*tie_vector)) ** 2
 
     added = tied.overturning_energy - free.overturning_energy
     assert added == pytest.approx(min(stored(1.0), stored(-1.0)), rel=0.05)
@@ -451,7 +451,7 @@ def test_contact_changes_with_ties_terminate(number):
     assert ended in ("completed", "overturned", "toppled")
 
 
-def out_of_balance(system: rf.System) -> float:
+def imbalance_at_rest(system: rf.System) -> float:
     """Return the greatest unbalanced force at rest over the weight, or moment likewise."""
     chain, poses = system.setting.standing.chain, system.setting.standing.rest
     loads, weights = chain.link_loads(poses), chain.weights(poses)
@@ -477,7 +477,7 @@ def test_ties_of_any_stiffness_allow_static_equilibrium(stiffness):
         for on, to in (("0.2 m", "2.355 m"), ("0.59 m", "0.21 m"))
     ]  # fmt: skip
     system = rf.System(rf.Stack(upper, lower, interfaces=[pads]), pads, *ties)
-    assert out_of_balance(system) < 1e-12 * max(1.0, stiffness / 1e8)
+    assert imbalance_at_rest(system) < 1e-12 * max(1.0, stiffness / 1e8)
 
 
 @pytest.mark.parametrize("offset", ["0 m", "2 cm"])
@@ -499,17 +499,17 @@ def test_links_engaging_within_a_static_step_are_resolved(number):
     upper = chain.bodies[0].part.body
     turned = 0.5 * math.atan2(upper.right, upper.height)
     places = [share * turned for share in (0.001, 0.02, 0.3, -0.02, -0.3)]
-    for rotation, stands in zip(places, chain.curve(places), strict=True):
-        assert stands is not None
-        assert sum(one.state.rotation for one in stands) == pytest.approx(rotation, rel=1e-9)
-        moments = chain.moments(stands)  # a single couple holds all bodies
+    for rotation, poses in zip(places, chain.curve(places), strict=True):
+        assert poses is not None
+        assert sum(one.state.rotation for one in poses) == pytest.approx(rotation, rel=1e-9)
+        moments = chain.moments(poses)  # a single couple holds all bodies
         assert max(moments) - min(moments) < 1e-6 * chain.weight * upper.height
 
 
 @pytest.mark.parametrize("times", [1e3, 1e6, 1e9])
 def test_nearly_rigid_bar_carries_the_force_required_by_equilibrium(times):
-    beside, half = 0.05, 0.5
-    upper = rf.Block(width="1 m", height="2 m", mass="2 t", eccentricity=f"{beside} m")
+    offset, half = 0.05, 0.5
+    upper = rf.Block(width="1 m", height="2 m", mass="2 t", eccentricity=f"{offset} m")
     lower = rf.Block(width="1.2 m", height="1 m", mass="3 t")
     weight = 2e3 * 9.80665
     bar = rf.Restrainer(
@@ -519,7 +519,7 @@ def test_nearly_rigid_bar_carries_the_force_required_by_equilibrium(times):
     stiff = rf.TwoSpringSupport(frequency_ratio=300, damping_ratio=0.1)
     rest = rf.System(rf.Stack(upper, lower, interfaces=[stiff]), stiff, bar).equilibrium()
     # the corner above the bar stays: the bar takes W e / 2 b from the other pad
-    share = float(rest.static_restrainer_force[0]) / (-weight * beside / (2.0 * half))
+    share = float(rest.static_restrainer_force[0]) / (-weight * offset / (2.0 * half))
     assert 0.0 < share < 1.0
     if times > 1e7:
         assert share == pytest.approx(1.0, rel=2e-3)

@@ -35,8 +35,8 @@ GRAVITY = 9.80665
 FULL = int(ContactState.FULL)
 
 
-def on_rigid(upper, lower, **given):
-    return rf.System(rf.Stack(upper, lower, interfaces=[RIGID], **given), RIGID)
+def on_rigid(upper, lower, **options):
+    return rf.System(rf.Stack(upper, lower, interfaces=[RIGID], **options), RIGID)
 
 
 def shaken(peak: float, frequency: float = 1.0) -> rf.GroundMotion:
@@ -77,7 +77,7 @@ def test_lowest_body_uplifts_at_its_own_threshold_below_airborne_bodies():
     assert 33.7 * abs(math.sin(omega * time)) == pytest.approx(GRAVITY * width / height, rel=1e-6)
 
 
-def together(upper, lower) -> float:
+def joint_uplift_acceleration(upper, lower) -> float:
     """Return the acceleration at which two centred blocks rock as one."""
     one, two = lower.si, upper.si
     moment = one.mass * one.half_height + two.mass * (2.0 * one.half_height + two.half_height)
@@ -88,8 +88,8 @@ def together(upper, lower) -> float:
 @pytest.mark.parametrize(("upper", "lower", "first"), [(STATUE, PLINTH, 1), (HEAD, COLUMN, 2)])
 def test_first_uplift_of_a_two_body_stack_matches_closed_form(upper, lower, first, way):
     alone = GRAVITY * upper.si.half_width / upper.si.half_height
-    starts = alone if first == 1 else together(upper, lower)
-    assert starts < (together(upper, lower) if first == 1 else alone)
+    starts = alone if first == 1 else joint_uplift_acceleration(upper, lower)
+    assert starts < (joint_uplift_acceleration(upper, lower) if first == 1 else alone)
     system = on_rigid(upper, lower)
     assert system.simulate(shaken(0.999 * starts), duration="0.5 s").sizes["event"] == 0
     found = system.simulate(shaken(1.01 * way * starts), duration="0.35 s")
@@ -348,8 +348,8 @@ def test_ambiguous_slip_change_is_not_counted_as_impact_mode():
     system, motion = drawn("stack of mixed bases", np.random.default_rng(38))
     with plainly():
         found = system.simulate(motion, accuracy="fast", outputs=None, second_look=False)
-    told = "and there are 2 ways to bear and to slip then: taken is one with body 1 in full"
-    assert told in found.attrs["cautions"]
+    caution = "and there are 2 ways to bear and to slip then: taken is one with body 1 in full"
+    assert caution in found.attrs["cautions"]
     assert found.attrs["impacts_of_several_modes"] == 0
 
 
@@ -472,8 +472,8 @@ def test_landing_beneath_a_sliding_body_obeys_restitution(restitution):
             speed, _ = end_speed(base, left, before)
             comes = not base.base.is_held(contact, left) and speed < -1e-3
             if comes and abs(base.base.level(left, line, ())) < 1e-9:
-                kept = end_speed(base, left, after)[0] / speed
-                assert kept == pytest.approx(restitution, abs=1e-5), events.time[i]
+                ratio = end_speed(base, left, after)[0] / speed
+                assert ratio == pytest.approx(restitution, abs=1e-5), events.time[i]
                 landings += 1
     assert landings > 20
 
@@ -513,8 +513,10 @@ def test_ending_a_short_slip_loses_only_its_own_energy(sense, above):
     mode = system.with_slip_sense(system.with_slip_sense(mode, 0, above), 1, sense)
     rate = system.coordinates() + system.horizontal_of(1)
     state[system.coordinates() + system.horizontal_of(0)], state[rate] = above, 1e-6 * sense
-    had = system.energies(mode, state).kinetic
+    kinetic = system.energies(mode, state).kinetic
     new = system.end_short_slip(1, mode, state, Ground(0.0, 0.0), memory)
     assert not system.body_mode(new, 1).slides
-    assert had - system.energies(new, state).kinetic == pytest.approx(memory[IMPACT_LOSS], rel=1e-3)
+    assert kinetic - system.energies(new, state).kinetic == pytest.approx(
+        memory[IMPACT_LOSS], rel=1e-3
+    )
     assert 0.0 < memory[IMPACT_LOSS] < 1e-12

@@ -149,8 +149,8 @@ def test_sweep_and_simulate_signatures_match_declarations():
         assert of_sweep[name].default == one.default
     assert set(SWEEP_ARGUMENT_NAMES) < set(of_sweep)
     of_run = inspect.signature(rf.System.simulate).parameters
-    only_of_a_run = {"self", "motion", "certify", "second_look"}
-    assert set(get_type_hints(RunArguments)) == set(of_run) - only_of_a_run
+    only_of_runs = {"self", "motion", "certify", "second_look"}
+    assert set(get_type_hints(RunArguments)) == set(of_run) - only_of_runs
     assert all(of_run[name].default == DEFAULTS.get(name) for name in (*LENGTH, *COURSE))
 
 
@@ -167,13 +167,13 @@ def test_shared_argument_values_are_checked_by_all_analyses():
         ({"overturning": "halt"}, "overturning"),
         ({"accuracy": "exact"}, "accuracy"),
     ):
-        for function, given in (
+        for function, arguments in (
             (rf.rocking_spectrum, {"periods": ([2.0], "s")}),
             (rf.overturning_spectrum, {"periods": ([2.0], "s"), "scale": [1.0, 2.0]}),
             (rf.sweep, {"scale": [1.0]}),
         ):
             with pytest.raises(StudyError, match=words):
-                function(SYSTEM, PULSE, **given, **wrong)
+                function(SYSTEM, PULSE, **arguments, **wrong)
     with pytest.raises(StudyError, match="duration or free_vibration, not both"):
         rf.rocking_spectrum(
             SYSTEM, PULSE, periods=([2.0], "s"), duration="3 s", free_vibration="1 s"

@@ -199,8 +199,8 @@ def test_cap_width_defaults_to_block_width():
     block = rf.Block(width="2.4 m", height="9.6 m", mass="50 t")
     soil = rf.WinklerSoil(**SOIL)
     own = rf.System(block, rf.CushionCap(**CAP), soil)
-    told = rf.System(block, rf.CushionCap(**CAP, width="2.4 m"), soil)
-    assert own.equilibrium().drop_attrs().identical(told.equilibrium().drop_attrs())
+    explicit = rf.System(block, rf.CushionCap(**CAP, width="2.4 m"), soil)
+    assert own.equilibrium().drop_attrs().identical(explicit.equilibrium().drop_attrs())
     wider = rf.System(block, rf.CushionCap(**CAP, width="3 m"), soil)
     assert wider.equilibrium().soil_settlement < own.equilibrium().soil_settlement
 

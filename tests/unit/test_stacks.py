@@ -63,7 +63,7 @@ def test_a_stack_is_changed_by_copying():
 
 
 @pytest.mark.parametrize(
-    ("bodies", "given", "words"),
+    ("bodies", "options", "words"),
     [
         ((STATUE,), {"interfaces": []}, "2 to 12 bodies, got 1"),
         ((STATUE, PLINTH), {"interfaces": []}, "1 interfaces between them, got 0"),
@@ -74,9 +74,9 @@ def test_a_stack_is_changed_by_copying():
         ((STATUE, PLINTH), {"interfaces": [JOINT], "offsets": ["0.21 m"]}, "reaches 0.46 m"),
     ],
 )
-def test_invalid_stack_is_refused(bodies, given, words):
+def test_invalid_stack_is_refused(bodies, options, words):
     with pytest.raises(ComponentError, match=words):
-        rf.Stack(*bodies, **given)
+        rf.Stack(*bodies, **options)
 
 
 @pytest.mark.parametrize(
@@ -184,13 +184,17 @@ def test_overturning_of_a_lower_body_overturns_the_stack():
     at_end = np.abs(run.body_rotation[:, -1].to_numpy())
     assert at_end[0] < 0.5 * float(run.overturning_angle)
     assert run.event_body[-1] == 1
-    stands = system.simulate(PULSE, free_vibration="1 s", second_look=False)
+    standing = system.simulate(PULSE, free_vibration="1 s", second_look=False)
     angle = np.arctan2(0.5, (2.0 * 6.4 + 9.0 * 3.0) / 11.0)  # of both as one body
-    share = float(stands.peak_body_rotation[1]) / angle
-    assert float(stands.peak_relative_rotation) == pytest.approx(share, rel=1e-6)
-    assert f" of body 1, a lower body {100.0 * share:.3g} % of its own;" in stands.attrs["verdict"]
-    onwards = system.simulate(duration="0.5 s", initial=stands, second_look=False)
-    assert float(onwards.peak_relative_rotation) >= abs(float(stands.body_rotation[1, -1])) / angle
+    share = float(standing.peak_body_rotation[1]) / angle
+    assert float(standing.peak_relative_rotation) == pytest.approx(share, rel=1e-6)
+    assert (
+        f" of body 1, a lower body {100.0 * share:.3g} % of its own;" in standing.attrs["verdict"]
+    )
+    onwards = system.simulate(duration="0.5 s", initial=standing, second_look=False)
+    assert (
+        float(onwards.peak_relative_rotation) >= abs(float(standing.body_rotation[1, -1])) / angle
+    )
 
 
 def test_offsets_lean_a_stack_at_rest():

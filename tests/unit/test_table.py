@@ -176,8 +176,8 @@ def test_values_of_only_some_runs_are_missing_in_others(runs):
 
 
 def test_table_survives_csv_round_trip(study, tmp_path):
-    for given, index in ((study, "scale"), (rf.concat([study] * 2, "case"), ["case", "scale"])):
-        table = rf.table(given)
+    for dataset, index in ((study, "scale"), (rf.concat([study] * 2, "case"), ["case", "scale"])):
+        table = rf.table(dataset)
         table.to_csv(tmp_path / "study.csv")
         again = pd.read_csv(tmp_path / "study.csv", index_col=index)
         pd.testing.assert_frame_equal(again, table, check_exact=True)
@@ -223,7 +223,7 @@ def test_variables_of_other_dimensions_have_separate_rows():
 
 
 def test_invalid_table_arguments_are_refused(runs, study):
-    for given, options, words in (
+    for dataset, options, words in (
         ("run.nc", (), "open a file with xr.open_dataset first"),
         (3, (), "expected a dataset"),
         ([], (), "found no runs"),
@@ -234,7 +234,7 @@ def test_invalid_table_arguments_are_refused(runs, study):
         ([runs[0], study], (), "different dimensions"),
     ):
         with pytest.raises(SchemaError, match=words):
-            rf.table(given, *options)
+            rf.table(dataset, *options)
     with pytest.raises(ComponentError, match="'scalars' or 'histories' or 'events'"):
         rf.table(runs[0], "everything")
 

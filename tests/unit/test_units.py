@@ -422,8 +422,8 @@ def test_other_units_are_converted(maker, name, text, attribute, expected):
 def test_unit_conversion_adds_no_rounding_noise(unit):
     """The product of the floats 70 and 0.01 is 0.7000000000000001."""
     numbers = 70, 70.0, np.float64(70.0), np.array(70.0)  # some registries make arrays of numbers
-    for given in (f"70 {unit}", (70.0, unit), *(pint.Quantity(one, unit) for one in numbers)):
-        assert make_block(width=given) == make_block(width="0.7 m")
+    for value in (f"70 {unit}", (70.0, unit), *(pint.Quantity(one, unit) for one in numbers)):
+        assert make_block(width=value) == make_block(width="0.7 m")
     assert "width='0.7 m'" in repr(make_block(width=f"70 {unit}"))
     feet = make_block(height="8 ft", mass="2500 lb")  # 1 ft is 0.30479999999999996 m to pint
     assert (feet.si.height, feet.si.mass) == (2.4384, 1133.980925)
