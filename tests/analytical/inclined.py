@@ -19,17 +19,17 @@ REST = 1e-10
 
 @dataclass(frozen=True)
 class Stone:
-    """A block whose centre of mass stands `beside` the middle of its base."""
+    """A block whose centre of mass is at `offset` from the middle of its base."""
 
     half_width: float
     height: float  # of the centre of mass
     mass: float
     inertia: float  # about the centre of mass
-    beside: float = 0.0
+    offset: float = 0.0
 
     def seen_from(self, point, rotation):
-        """Return the centre of mass as seen from a point of the base, in a rotated block."""
-        right, up = self.beside - point, self.height
+        """Return the centre of mass relative to a point of the base, in a rotated block."""
+        right, up = self.offset - point, self.height
         s, c = math.sin(rotation), math.cos(rotation)
         return np.array([c * right + s * up, c * up - s * right])
 
@@ -40,13 +40,13 @@ def clockwise(arm, force):
 
 
 def rocking(stone, inclination, ground, end, times):
-    """Return rotations relative to the ground at some times, of a block that starts at rest.
+    """Return rotations relative to the ground, at given times, of a block that starts at rest.
 
     `ground(t)` is the acceleration of the ground, horizontal and vertical.
     """
-    level = -inclination  # the ground rises to the right: turned against the clock
+    level = -inclination  # the ground rises to the right: anticlockwise
     corners = {1: stone.half_width, -1: -stone.half_width}
-    theta = math.atan2(stone.half_width - abs(stone.beside), stone.height)
+    theta = math.atan2(stone.half_width - abs(stone.offset), stone.height)
 
     def load(time):
         return -stone.mass * (ground(time) + np.array([0.0, G]))
@@ -56,11 +56,11 @@ def rocking(stone, inclination, ground, end, times):
         return stone.inertia + stone.mass * (arm @ arm)
 
     def tipping(time, side):
-        """Moment about a corner at rest, to its side."""
+        """Return the moment about a corner at rest, towards its side."""
         return side * clockwise(stone.seen_from(corners[side], level), load(time))
 
     def next_start(time):
-        """Return when a block at rest begins to tip, and to which side."""
+        """Return when and to which side a block at rest begins to uplift."""
         found = []
         for side in (1, -1):
             fine = np.arange(time, end, 1e-3)
@@ -105,7 +105,7 @@ def rocking(stone, inclination, ground, end, times):
 
 @dataclass(frozen=True)
 class OnPads:
-    """A block on two inclined pads, the middle of its base held along them."""
+    """A block on two inclined pads, with the middle of its base held along the slope."""
 
     stone: Stone
     inclination: float
@@ -114,12 +114,12 @@ class OnPads:
 
     @property
     def axes(self):
-        """Directions up the slope, and away from it."""
+        """Return the directions along the slope, upwards, and normal to it."""
         s, c = math.sin(self.inclination), math.cos(self.inclination)
         return np.array([c, s]), np.array([-s, c])
 
     def placed(self, place, velocity):
-        """Return corners and the middle of the base: seen from the centre of mass, and their rates.
+        """Return corners and middle of the base relative to the centre of mass, and their rates.
 
         `place` is that of the centre of mass on the unloaded pads, and the rotation in space.
         """
@@ -131,13 +131,13 @@ class OnPads:
         return arms, turning
 
     def pad(self, place, velocity, corner):
-        """Return how deep a corner stands in its pad, and how fast it rises."""
+        """Return the compression of a pad at a corner, and the rate at which the corner rises."""
         _, normal = self.axes
         arms, rates = self.placed(place, velocity)
         return -normal @ (place[:2] + arms[corner]), normal @ rates[corner]
 
     def pull(self, place, velocity, corner):
-        """Return the force of a pad that touches."""
+        """Return the force of a pad in contact."""
         depth, rate = self.pad(place, velocity, corner)
         return self.stiffness * depth - self.damping * rate
 

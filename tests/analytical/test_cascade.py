@@ -90,7 +90,7 @@ def test_the_first_stage_is_block_and_cap_as_one_body_on_the_soil(rule, rotation
 
 
 def test_the_ground_of_the_second_stage_is_the_motion_of_the_cap_s_top():
-    """Second differences of where the top is: away from jumps they are its acceleration."""
+    """Away from jumps, second differences of the position of the top are its acceleration."""
     step = 1e-3
     response = cascade(restraint="centre").simulate(
         pulse(vertical=2.0), output_step=f"{step} s", **RUN
@@ -107,7 +107,7 @@ def test_the_ground_of_the_second_stage_is_the_motion_of_the_cap_s_top():
     ):
         expected = np.diff(place, 2) / step**2 + ground[1:-1]
         found = response[name].values[1:-1]
-        # the soil's dashpots begin and end to push in steps; away from these
+        # away from steps of the soil's dashpot forces
         bend = np.abs(np.diff(found, prepend=found[0]))
         calm = bend < 10.0 * np.median(bend)
         assert calm.mean() > 0.9
@@ -118,7 +118,7 @@ def test_the_ground_of_the_second_stage_is_the_motion_of_the_cap_s_top():
 
 
 def jumps_of_the_top(first, rule):
-    """Return times and sizes of the jumps of the top's velocity: the first body is re-pinned."""
+    """Return times and sizes of jumps of the top's velocity, where the first body is re-pinned."""
     if rule != "contact-state":
         return []
     held = {FULL: 0.0, 1: -1.6, 2: 1.6}
@@ -156,7 +156,7 @@ def second_by_hand(step, rule):
 
 @pytest.mark.parametrize("rule", RULES)
 def test_the_second_stage_is_the_block_on_its_pads_on_the_moving_cap(rule):
-    """Straight lines between samples of the cap's motion: an error that falls with the step.
+    """The cap's motion is linear between samples: the error falls with the step.
 
     Where the first body is re-pinned its acceleration jumps as well as its velocity, and
     straight lines over the jump are of first order only.
@@ -171,7 +171,7 @@ def test_the_second_stage_is_the_block_on_its_pads_on_the_moving_cap(rule):
     assert errors[0] > errors[1] > errors[2]
     assert errors[0] > (4.0 if rule == "contact-state" else 32.0) * errors[2]
     assert errors[2] < 3e-5
-    # all of the second stage is that of the run by hand, the totals are sums
+    # the second stage equals the run by hand, the totals are sums
     for name in ("left_reaction", "right_reaction"):
         near = np.abs(whole[name].values - second[name].values) < 1e-2 * 50e3 * 9.8
         assert near.mean() > 0.99, name
@@ -205,7 +205,7 @@ def test_initial_rotation_goes_to_second_stage(rule):
 
 
 def test_total_rotation_decides_overturning():
-    """Neither stage reaches theta: their sum does."""
+    """Neither stage reaches theta, but their sum does."""
     fine = {"output_step": "0.2 ms", "free_vibration": "2 s", "accuracy": "reference"}
     motion = pulse(-6.5)
     stopped = cascade().simulate(motion, **fine)
@@ -234,7 +234,7 @@ def test_total_rotation_decides_overturning():
 
 
 def test_counts_and_durations_stop_at_overturning():
-    """What the stages would do after the total has overturned is no part of the run."""
+    """Motion of the stages after the total has overturned is not part of the run."""
     t = np.arange(401) * 0.01
     across = np.where(t <= 2.0, -9.0 * np.sin(math.pi * t), 0.0)
     upwards = np.where(t >= 1.0, 25.0 * np.sin(2.0 * math.pi * t), 0.0)
@@ -247,7 +247,7 @@ def test_counts_and_durations_stop_at_overturning():
     time = np.concatenate([[0.0], stopped.event_time.values, [end]])
     state = np.concatenate([[FULL], stopped.contact_state_after.values])
     flying = np.diff(time)[state == FLIGHT].sum()
-    assert longer.flight_time.item() > flying + 0.01  # there is something to leave out
+    assert longer.flight_time.item() > flying + 0.01  # the continued run has more flight
     assert stopped.flight_time.item() == pytest.approx(flying, abs=1e-9)
     into = (state[1:] == FLIGHT) & (state[:-1] != FLIGHT)
     assert stopped.flight_count.item() == into.sum()
@@ -286,7 +286,7 @@ def test_peak_of_total_rotation_is_found_between_samples():
 
 
 def test_soil_events_cause_no_vertical_impulse_on_block():
-    """What jumps is the velocity of the cap's top; pads press with forces, their hold along it."""
+    """The velocity of the cap's top jumps; pads act by forces, except along the cap."""
     soft = rf.WinklerSoil(stiffness="8 MPa", damping="100 kPa*s")
     system = rf.System(block(), pads(), CAP, soft, coupling="cascade")
     response = system.simulate(pulse(-6.0), outputs="impulse", **RUN)

@@ -13,7 +13,7 @@ pytestmark = pytest.mark.analytical
 
 
 def decayed(first, restitution, count, theta, rotation):
-    """Peaks by the balance of energy, of which each impact leaves the square of the restitution."""
+    """Return peaks by energy, of which each impact retains the square of the restitution."""
     left = restitution ** (2 * np.arange(count))
     if rotation == "small":
         share = left * (1.0 - (1.0 - first / theta) ** 2)
@@ -23,7 +23,7 @@ def decayed(first, restitution, count, theta, rotation):
 
 
 def times_of(peaks, theta):
-    """Times of the peaks of the linearised block, from the release."""
+    """Return times of the peaks of the linearised block after its release."""
     quarters = np.arccosh(1.0 / (1.0 - peaks / theta)) / P
     return np.concatenate([[0.0], np.cumsum(quarters[:-1] + quarters[1:])])
 

@@ -28,12 +28,12 @@ def close(found, expected, share):
 
 
 def ground_of(floor, samples=NOISE):
-    """Return the ground at the floor's samples: it stands still after its end."""
+    """Return the ground motion at the floor's samples, at rest after its end."""
     return np.append(samples, np.zeros(len(floor) - samples.size))
 
 
 def integrate(slope, size, ground, dt=DT):
-    """Integrate from rest under straight lines, started anew at every sample."""
+    """Integrate from rest under linear interpolation, restarted at every sample."""
     states = np.zeros((ground.size, size))
     for k in range(ground.size - 1):
         start, rise = ground[k], (ground[k + 1] - ground[k]) / dt
@@ -63,7 +63,7 @@ def test_single_mode_floor_matches_integrated_oscillator():
 
 
 def test_three_storeys_of_masses_and_springs():
-    """Dashpots in proportion to masses and springs have damping ratios of their own per mode."""
+    """Dashpots proportional to masses and springs have a damping ratio for each mode."""
     masses, springs = np.array([30e3, 25e3, 12e3]), np.array([60e6, 35e6, 20e6])
     per_mass, per_spring = 0.6, 8e-4
     stiffness = np.array(
@@ -95,7 +95,7 @@ def test_three_storeys_of_masses_and_springs():
 
 
 def exact(ground, period, damping, dt=DT):
-    """Follow an oscillator and its straight ground, with forty digits."""
+    """Integrate an oscillator under piecewise linear ground motion, with forty digits."""
     mpmath.mp.dps = 40
     omega = 2 * mpmath.pi / mpmath.mpf(period)
     # of u, du/dt/omega, the ground and its rise over a step
@@ -137,7 +137,7 @@ def test_finer_time_step_gives_same_floor_motion():
 
 
 def test_a_harmonic_from_rest_in_closed_form():
-    """A pulse is followed by its polynomials, not by straight lines through its samples."""
+    """A pulse is integrated by its polynomials, not by straight lines through its samples."""
     rate, omega, damping = 2.0 * math.pi, 2.0 * math.pi / 0.37, 0.04
     pulse = rf.GroundMotion.harmonic("1 m/s^2", "1 Hz", duration="5 s")
     floor = pulse.through_storeys(["0.37 s"], damping, time_step="0.002 s").si.horizontal
@@ -155,7 +155,7 @@ def test_a_harmonic_from_rest_in_closed_form():
 
 
 def test_jump_of_pulse_is_resolved_exactly():
-    """Under a constant acceleration a floor swings about it, undamped up to twice as high."""
+    """Under a constant acceleration an undamped floor reaches twice that value."""
     pulse = rf.GroundMotion.cosine_pulse("1 m/s^2", "0.01 Hz", cycles=1)
     floor = pulse.through_storeys(
         ["0.5 s"], 0, free_vibration="0 s", time_step="0.001 s"
@@ -191,7 +191,7 @@ def test_the_spectrum_of_a_floor_is_that_of_an_oscillator_on_an_oscillator():
 
 
 def test_transmissibilities_of_floor_and_oscillator_multiply():
-    """A long harmonic that fades in: the transmissibilities of floor and oscillator multiply."""
+    """For a long harmonic that fades in, transmissibilities of floor and oscillator multiply."""
     step, below, above, damping = 0.005, 0.6, 0.35, 0.05
     time = np.arange(12_001) * step
     swell = np.sin(0.5 * np.pi * np.minimum(1.0, np.minimum(time, time[-1] - time) / 20.0)) ** 2
@@ -250,7 +250,7 @@ def test_uniform_storeys_match_assembled_masses_and_stiffnesses():
 
 
 def test_truncated_modes_move_with_ground():
-    """The first mode alone misses little where the others are stiff to the motion."""
+    """The first mode alone suffices where the others are stiff relative to the motion."""
     smooth = motion(np.convolve(NOISE, np.hanning(40), "full") / 10.0)
     building = {"storeys": 4, "floor": 2, "period": "0.2 s", "time_step": "0.002 s"}
     whole = smooth.through_storeys(**building).si.horizontal.samples

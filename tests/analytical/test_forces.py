@@ -35,7 +35,7 @@ SCENES = {
 }
 OF_SOME = {
     "toe_pressure": ("soil", "one body", "coupled", "cascade"),
-    "soil_friction_demand": ("coupled", "cascade"),  # elsewhere that of the one base there is
+    "soil_friction_demand": ("coupled", "cascade"),  # other scenes have only one base
 }
 POINTS = {"roof": ("0 m", "9.6 m"), "right corner": ("1.2 m", "0 m"), "left": ("-1.2 m", "0 m")}
 ALL = (*GROUPS, "friction_demand", "horizontal_velocity")
@@ -124,7 +124,7 @@ def test_reactions_follow_from_newtons_law(scene, response):
         tilt = response.cap_rotation.values if scene == "coupled" else 0.0
         s, c = np.sin(tilt), np.cos(tilt)
         force, press = c * force - s * press, s * force + c * press
-    if scene != "cascade":  # of which the total is a sum of displacements, not one body's
+    if scene != "cascade":  # the total of a cascade is a sum of displacements, not of one body
         for found, expected in (("horizontal", force), ("vertical", press)):
             np.testing.assert_allclose(
                 response[f"{found}_reaction"], expected, atol=1e-9 * mass * G
@@ -159,7 +159,7 @@ ON_PADS = {
 @pytest.mark.wide
 @pytest.mark.parametrize("where", ON_PADS)
 def test_base_overturning_moment_is_that_of_pad_reactions(where):
-    """Held in the middle, the horizontal reaction has no lever about it."""
+    """The horizontal reaction at the held middle has no lever about it."""
     coupling = "cascade" if "cascade" in where else "coupled"
     system = rf.System(*ON_PADS[where], restraint="centre", coupling=coupling)
     response = system.simulate(PULSE, outputs="reaction")
@@ -184,7 +184,7 @@ def test_toe_pressure_in_closed_form():
 
 
 def test_friction_demand_of_released_block_in_closed_form():
-    """Of a rocking block, from the energy that it has at each angle."""
+    """Friction demand of a rocking block, from its energy at each angle."""
     start, share, theta, radius = 0.15, 0.75, math.atan2(B, H), math.hypot(B, H)
     system = rf.System(BLOCK)
     response = system.simulate(
@@ -198,7 +198,7 @@ def test_friction_demand_of_released_block_in_closed_form():
     up = G + radius * (-pull * np.sin(lean) ** 2 - np.cos(lean) * square)
     assert falls.time.size > 50
     np.testing.assert_allclose(falls.friction_demand, np.abs(across) / up, rtol=1e-8)
-    # about its lower corner a block falls flatter the lower it is: the demand grows to impact
+    # the motion of the centre is more horizontal at small rotations: the demand grows to impact
     assert response.peak_friction_demand == pytest.approx(
         share * math.sin(theta) * math.cos(theta) / (1.0 - share * math.sin(theta) ** 2), rel=0.2
     )
@@ -220,7 +220,7 @@ def test_impulsive_friction_demand_in_closed_form():
 
 @pytest.mark.parametrize("lean", [0.0, 0.1, -0.2])
 def test_event_impulses_are_resolved_along_tilted_base(lean):
-    """As that of forces: along and normal to the cap or to the body below, however they lean."""
+    """As for forces: along and normal to the cap or body below, for any rotation."""
     system = rf.System(rf.Stack(BLOCK, BLOCK, interfaces=[PADS]), PADS)
     along, normal = 0.3, 2.0
     zero, turned = np.zeros(1), np.array([lean + 0.05])
@@ -238,7 +238,7 @@ def test_event_impulses_are_resolved_along_tilted_base(lean):
 
 
 def test_rest_event_is_left_out_of_impulsive_friction_demand():
-    """The last event of an endless series ends all motion at once, in a ratio of its own."""
+    """The last event of an endless series ends all motion at once, in its own ratio."""
     response = rf.System(BLOCK, rf.RigidGround(restitution=0.8)).simulate(
         duration="60 s", initial=rf.InitialState(rotation="0.05 rad")
     )
@@ -439,7 +439,7 @@ def test_too_little_friction_warns_with_time_and_duration():
     )
     with pytest.warns(ModelWarning, match="the frame would slide from"):
         rf.System(FRAME, ground).simulate(PULSE)
-    # two numbers that look alike are told in as many digits as tell them apart
+    # similar numbers are printed with enough digits to distinguish them
     almost = rf.RigidGround(friction=(1.0 - 1e-6) * most)
     with pytest.warns(ModelWarning, match="needs 0.33[0-9]{4,} of 0.33[0-9]{4,},"):
         rf.System(BLOCK, almost, sliding="checked").simulate(PULSE)

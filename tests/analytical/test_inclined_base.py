@@ -27,7 +27,7 @@ def stone_of(block):
 
 
 def record(seed, horizontal, vertical):
-    """Draw a smooth motion of 2 s; give it, and its acceleration as a function of time."""
+    """Sample a smooth motion of 2 s; return it and its acceleration as a function of time."""
     rng = np.random.default_rng(seed)
     time = np.arange(0.0, 2.0 + STEP / 2.0, STEP)
     taper = np.sin(np.pi * time / time[-1])
@@ -50,15 +50,15 @@ SCENES = {
     "uphill": (BLOCK, 4.0, record(1, 4.5, 0.0)),
     "downhill": (BLOCK, -4.0, record(2, -4.5, 0.0)),
     "both components": (BLOCK, 6.0, record(7, 3.5, 4.0)),
-    "centre of mass beside": (LOPSIDED, 5.0, record(4, -4.0, -3.0)),
-    "beside, the other way": (LOPSIDED, -5.0, record(4, 3.5, 5.0)),
+    "eccentric": (LOPSIDED, 5.0, record(4, -4.0, -3.0)),
+    "eccentric, mirrored": (LOPSIDED, -5.0, record(4, 3.5, 5.0)),
 }
 
 
 @pytest.mark.parametrize(
     "name",
     [
-        pytest.param(name, marks=[pytest.mark.long] * (name in ("uphill", "centre of mass beside")))
+        pytest.param(name, marks=[pytest.mark.long] * (name in ("uphill", "eccentric")))
         for name in SCENES
     ],
 )
@@ -75,7 +75,7 @@ def test_rigid_ground_against_true_axes(name):
 
 @pytest.mark.parametrize(
     "name",
-    [pytest.param("both components", marks=pytest.mark.long), "beside, the other way"],
+    [pytest.param("both components", marks=pytest.mark.long), "eccentric, mirrored"],
 )
 def test_pads_against_true_axes(name):
     block, degrees, (motion, ground) = SCENES[name]
@@ -187,7 +187,7 @@ def test_rest_rotation_and_reactions_on_compliant_slopes():
 @pytest.mark.parametrize("share", [0.3, 0.9, 0.99, 0.999])
 @pytest.mark.parametrize("side", [1.0, -1.0])
 def test_body_on_bed_rests_in_full_contact_up_to_uplift(share, side):
-    """There K sin a cos a = m g h sin(i + a); beyond it the held point moves, and so does rest."""
+    """At rest K sin a cos a = m g h sin(i + a), until the held point moves."""
     b, h, stiffness = 0.5 * WIDTH, 0.5 * HEIGHT, 2e6
     rocking, weight = stiffness * b**3 / 1.5, MASS * G
     lean = inclination = 0.0
@@ -212,7 +212,7 @@ def test_body_on_bed_rests_in_full_contact_up_to_uplift(share, side):
 @pytest.mark.filterwarnings("ignore:at rest the body leans")
 @pytest.mark.parametrize("inclination", [0.02, -0.03])
 def test_restoring_moment_of_stack_vanishes_at_rest_on_slope(inclination):
-    """Rest from the accelerations, the holding moment from the balance of forces."""
+    """Rest from zero accelerations, the holding moment from the balance of forces."""
     system = rf.System(
         rf.Block(width="2 m", height="5 m", mass="40 t"),
         rf.TwoSpringSupport(frequency_ratio=12, damping_ratio=0.1),

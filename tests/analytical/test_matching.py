@@ -51,7 +51,7 @@ def pseudo_spectrum(samples, step, periods, damping):
 @pytest.mark.parametrize("period", [0.1, 0.5, 2.0])
 @pytest.mark.parametrize("damping", [0.01, 0.05, 0.3])
 def test_wavelet_is_tapered_cosine_without_its_mean(period, damping):
-    """A Gaussian takes the integral of the cosine away; both are known in closed form."""
+    """A Gaussian cancels the integral of the cosine; both are known in closed form."""
     share = np.sqrt(1.0 - damping**2)
     frequency = 2.0 * np.pi / period * share
     lead = np.arctan(share / damping) / frequency
@@ -77,7 +77,7 @@ def test_wavelet_is_tapered_cosine_without_its_mean(period, damping):
 @pytest.mark.parametrize("peak_time", [0.0, 0.3, 2.0, 15.0, 29.5, 31.0])
 @pytest.mark.parametrize("period", [0.05, 0.7, 3.0, 10.0])
 def test_wavelets_leave_no_permanent_ground_displacement(peak_time, period):
-    """Straight lines through the samples: their integrals are known exactly."""
+    """Linear interpolation of samples has exact integrals."""
     one = wavelet_at(peak_time, period, 0.05, time_step=STEP, count=COUNT)
     samples = np.zeros(COUNT)
     samples[one.samples] = one.values
@@ -85,7 +85,7 @@ def test_wavelets_leave_no_permanent_ground_displacement(peak_time, period):
     assert 0.5 < np.abs(samples).max() < 2.5
     acceleration = integrate.cumulative_trapezoid(samples, dx=STEP, initial=0.0)
     assert abs(acceleration[-1]) < 1e-12
-    # the displacement of a hat at time t is its area times what is left of the motion
+    # the displacement of a hat at time t is its area times the remaining time
     assert abs(((LENGTH - np.arange(COUNT) * STEP) * samples).sum() * STEP) < 1e-10
     path = rf.GroundMotion.from_arrays((samples, "m/s^2"), f"{STEP} s")
     moved = rf.measures.velocity_and_displacement(path)
@@ -134,7 +134,7 @@ def test_oscillator_peak_after_end_of_motion_is_found():
 
 @pytest.mark.parametrize("damping", [0.01, 0.05, 0.4])
 def test_sample_influences_reproduce_response(damping):
-    """Of every sample at once: a motion's response is the sum over its samples."""
+    """The response to a motion is the sum of the responses to its samples."""
     samples = noise(4)
     oscillators = Oscillators(PERIODS, damping, STEP)
     times = (np.linspace(200, 3100, PERIODS.size).round() + 0.37) * STEP
@@ -176,7 +176,7 @@ def test_wavelet_effects_match_finite_differences():
 
 
 def test_wavelet_amplitude_brings_peak_to_target():
-    """Linear theory is exact as long as the times do not change: one oscillator, one wavelet."""
+    """Linear theory is exact for one oscillator and one wavelet while peak times do not change."""
     samples = noise(6)
     oscillators = Oscillators(np.array([0.5]), 0.05, STEP)
     histories = oscillators.histories(samples)
@@ -194,7 +194,7 @@ def test_wavelet_amplitude_brings_peak_to_target():
 
 
 def test_second_peak_does_not_exceed_target():
-    """Two peaks of one oscillator: the greatest goes to the target, the other not beyond it."""
+    """Of two peaks of one oscillator the greatest matches the target, the other stays below it."""
     samples = noise(7)
     oscillators = Oscillators(np.array([0.5]), 0.05, STEP)
     peaks = oscillators.peaks(samples, oscillators.histories(samples))

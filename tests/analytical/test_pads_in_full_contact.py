@@ -145,8 +145,8 @@ def test_vertical_motion_is_a_damped_oscillator(beta, xi):
 @pytest.mark.parametrize("rotation", ["small", "finite"])
 @pytest.mark.parametrize(("slenderness", "xi"), [(4.0, 0.1), (2.0, 0.0), (6.0, 0.4)])
 def test_weak_horizontal_motion_is_a_damped_oscillator(slenderness, xi, rotation, rule):
-    # what is left out is of second order in the rotation, and of first order where the
-    # leading corner is held (x' = h + b |a|): the motion is so weak that neither shows
+    # the neglected terms are of second order in the rotation, and of first order where the
+    # leading corner is held (x' = h + b |a|): both are negligible in so weak a motion
     pads = Pads(slenderness=slenderness, damping_ratio=xi)
     across = rough_record(401, STEP, 1e-5 if rule == "leading-corner" else 1e-4, seed=2)
     motion = rf.GroundMotion.from_arrays((across, "m/s^2"), f"{STEP} s")

@@ -35,7 +35,7 @@ CASES = (
 def system(slenderness, radius=5.0, eccentricity=0.0, *, rounded=False):
     width = 2.0 * radius / np.hypot(1.0, slenderness)
     height = slenderness * width
-    if rounded:  # as the later ten were proved
+    if rounded:  # the ten later cases were proved with rounded numbers
         width, height = round(width, 6), round(slenderness * round(width, 6), 6)
     block = rf.Block(
         width=f"{width} m", height=f"{height} m", mass="1 t",
@@ -62,7 +62,7 @@ def test_proofs_on_both_sides_of_critical_scale_agree_with_runs(
 ):
     plain = radius == 5.0 and not (up or off)
     scene, motion = system(h_b, radius, off, rounded=not plain), half_sine(seconds, up)
-    standard = 1e-9 if off == 0.03 else 1e-12  # there it is off by 1e-11 to 1e-9
+    standard = 1e-9 if off == 0.03 else 1e-12  # there its error is 1e-11 to 1e-9
     assert rf.prove(scene, motion, scale=low).verdict == "safe for ever"
     assert rf.prove(scene, motion, scale=high).verdict == "overturns"
     for accuracy, away in (("reference", 1e-13), ("standard", standard), ("fast", FAST)):
@@ -83,7 +83,7 @@ def test_a_block_that_bounces_to_rest_is_proved_safe():
 
 
 def test_ground_falling_away_leaves_verdict_undecided():
-    """Both corners are unloaded at one instant, not at a verge."""
+    """Both corners are unloaded at one instant, but not at a threshold."""
     fall = np.array([0.0, -5.0, -12.0, -3.0, 0.0, 0.0])
     motion = rf.GroundMotion.from_arrays((np.zeros(6), "m/s^2"), "0.1 s", vertical=(fall, "m/s^2"))
     assert rf.prove(system(4), motion).reason == "the ground falls away under the block"

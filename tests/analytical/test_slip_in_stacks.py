@@ -66,7 +66,7 @@ def test_ambiguous_slip_after_jump_is_in_cautions(between, below, told):
 def test_two_plates_that_slide_in_closed_form(way):
     upper, lower, strong, length = 0.1, 0.3, way * 5.0, 0.4
     steady = rf.GroundMotion.from_arrays((np.full(41, strong), "m/s^2"), "0.01 s")
-    with plainly():  # these equations take longest to compile
+    with plainly():  # these equations take the longest to compile
         found = run_of(
             [ground(0.2, upper)], ground(0.35, lower), steady, bodies=(PLATE, SLAB),
             free_vibration=None,
@@ -94,7 +94,7 @@ def test_sticking_body_rides_on_sliding_body():
     ("seed", "static", "kinetic"), [(5, 0.36, 0.25), (8, 0.36, 0.25), (6, 0.38, 0.36)]
 )
 def test_wide_lower_body_acts_as_ground(seed, static, kinetic):
-    """In these runs no slip ends and turns round within an impact, where the laws differ."""
+    """In these runs no slip stops and reverses within an impact, where the laws differ."""
     floor, shaken = ground(static, kinetic), noise(seed, 6.0)
     wide = rf.Block(width="4 m", height="1 m", mass="30 t")
     found = run_of([floor], rf.RigidGround(), shaken, bodies=(STATUE, wide))
@@ -151,7 +151,7 @@ def test_sticking_impacts_rock_more_and_slip_less():
     )
     assert slides.impact_count.item() > 20
     assert sticks.impact_count.item() > 20
-    # what is held in impacts rocks more, and slips less
+    # bodies held in impacts rock more and slip less
     assert sticks.peak_rotation.item() > 100.0 * slides.peak_rotation.item()
     assert sticks.peak_body_slip.values[0] < slides.peak_body_slip.values[0]
 
@@ -210,7 +210,7 @@ def test_trial_impact_loss_equals_kinetic_energy_lost(corners, slip):
     stack = rf.Stack(STATUE, PLINTH, interfaces=[ground(0.3)])
     system = assemble((stack, ground(0.4))).setting.contact_model().system
     state, flying = np.zeros(12), system.with_bearing_corners(0, 0, 0)
-    # the upper body comes down turning, and both slip
+    # the upper body lands rotating, and both slip
     state[6:] = 0.7, -0.4, 0.0, 0.0, slip, -0.5 * slip
     had = system.energies(flying, state).kinetic
     set_inertia_loads(system, 0.0, 0.0, system.workspace())

@@ -82,7 +82,7 @@ def test_peak_slip_excludes_final_flight(base):
 @BASES
 @pytest.mark.parametrize("rule", ["contact-state", "leading-corner"])
 def test_infinite_friction_converges_to_held_base(base, rule):
-    # held, the point changes before the restitution of an impact is taken; with friction in it
+    # a held point changes before the restitution of an impact, a slipping one within it
     if base is PADS and rule == "contact-state":
         base = base.replace(restitution=1.0)
     held = run(base, restraint=rule, accuracy="reference")
@@ -157,9 +157,9 @@ PULSE = rf.GroundMotion.sine_pulse(amplitude="-4 m/s^2", frequency="1.5 Hz")
 
 @pytest.mark.parametrize("beside", ["0 m", "0.1 m"])
 def test_simultaneous_landing_obeys_restitution_and_friction_cone(beside):
-    """Each of its own speed, with friction of both within the cone; one alone as it tips the other.
+    """Each by its own speed, both impulses in the friction cone; or one, which lifts the other.
 
-    Neither waits for the other, so that a block that falls flat stays so.
+    Both are simultaneous, so that a block that falls flat stays flat.
     """
     block, rng, alone = BLOCK.replace(eccentricity=beside), np.random.default_rng(7), 0
     for friction in (0.1, 0.3, 0.6, np.inf):
@@ -207,7 +207,7 @@ def test_stack_slip_stays_within_friction_cone(frictions):
         assert (abs(along) <= friction * abs(normal) + 1e-9 * weight).all()
         rate = np.gradient(one.body_slip, one.time)
         slips = (abs(rate) > 0.05) & (normal > 0.01 * weight)
-        if friction < 0.3:  # each friction opposes the slip with all that it has
+        if friction < 0.3:  # friction opposes the slip fully
             assert slips.any()
             assert (np.sign(along)[slips] == -np.sign(rate)[slips]).mean() > 0.9
     np.testing.assert_allclose(
@@ -253,7 +253,7 @@ def test_checked_friction_in_stack_is_refused():
 
 
 def two_bodies(**friction):
-    """Run two bodies on yielding bases from a jump of the ground, after which both want to slip."""
+    """Run two bodies on compliant bases after a jump of the ground that makes both slip."""
     jump = rf.GroundMotion.from_arrays((np.full(7, 1.5), "m/s^2"), "0.05 s")
     plinth = rf.Block(width="1.5 m", height="2 m", mass="3 t")
     stack = rf.Stack(BLOCK, plinth, interfaces=[PADS.replace(frequency_ratio=20, **friction)])
@@ -281,7 +281,7 @@ def test_arbitrarily_large_friction_holds(friction):
 
 @pytest.mark.parametrize(("number", "ends"), [(189, "0.1 s"), (169, "0.13 s"), (174, "0.13 s")])
 def test_large_friction_does_not_chatter_from_rounding(number, ends):
-    """Each body slipped and stuck in turn, without end, as its friction came to the limit."""
+    """Each body once slipped and stuck endlessly when its friction reached the limit."""
     drawn_system, shake = drawn("friction on pads", np.random.default_rng(number))
     block = drawn_system.parts["block"]
     width, height = block.si.width, block.si.height
@@ -315,7 +315,7 @@ def test_squat_block_has_zero_restitution_on_pads():
     system = rf.System(squat, PADS.replace(friction=0.3))
     assert set(system.setting.support.restitution) == {0.0}
     assert not any("eps_max" in one for one in system.setting.cautions())
-    # let go of tilted it comes to rest, where corners that are thrown back bounce without end
+    # released at a tilt it comes to rest, where rebounding corners bounce endlessly
     tilted = rf.InitialState(rotation="0.2 rad")
     found = system.simulate(initial=tilted, duration="3 s", outputs=("energy",))
     assert found.status.item() == 0
@@ -333,7 +333,7 @@ def test_squat_block_has_zero_restitution_on_pads():
     ],
 )
 def test_corners_of_squat_bodies_do_not_chatter_from_rounding(number, ends):
-    """Each came down and left in turn, without end, as it touched its pad on its way up."""
+    """Each once landed and separated endlessly when it touched its pad while rising."""
     system, motion = drawn("stack of squat bodies", np.random.default_rng(number))
     with plainly():
         found = system.simulate(
@@ -343,7 +343,7 @@ def test_corners_of_squat_bodies_do_not_chatter_from_rounding(number, ends):
 
 
 def test_body_with_negligible_slip_does_not_chatter():
-    """It slipped to either side at the middle and at a corner, and its end left and landed."""
+    """It once slipped to either side at the middle and a corner, while its end left and landed."""
     system, motion = drawn("stack of squat bodies", np.random.default_rng(2412))
     with plainly():
         found = system.simulate(motion, duration="0.36 s", outputs=("energy",))
@@ -352,7 +352,7 @@ def test_body_with_negligible_slip_does_not_chatter():
 
 
 def test_overturning_at_instant_of_another_event_ends_run():
-    """The state and the mode were those after the landing that came before, and the run ended."""
+    """State and mode were once those after the preceding landing, and the run ended."""
     system, motion = drawn("stack of squat bodies", np.random.default_rng(840))
     with plainly():
         found = system.simulate(motion, accuracy="fast", outputs=None, second_look=False)
@@ -362,7 +362,7 @@ def test_overturning_at_instant_of_another_event_ends_run():
 
 @pytest.mark.long
 def test_bounces_and_slips_end_at_huge_friction():
-    """A body let go of its base and was held, without end, as the one below slipped."""
+    """A body once separated and was held endlessly while the body below slipped."""
     system, motion = drawn("stack with friction of any size", np.random.default_rng(650))
     found = system.simulate(motion, duration="1.03 s", outputs=("energy",), second_look=False)
     assert int(found.status) <= Status.TOPPLED

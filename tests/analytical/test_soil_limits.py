@@ -39,7 +39,7 @@ def run(*parts, peak=-3.0, duration="2.5 s", **options):
 
 
 def apart(one, other, name="rotation"):
-    """Largest difference of two histories, over the largest value."""
+    """Return the largest difference of two histories over the largest value."""
     scale = np.abs(other[name].values).max()
     return np.abs(one[name].values - other[name].values).max() / scale
 
@@ -51,7 +51,7 @@ def apart(one, other, name="rotation"):
 @pytest.mark.parametrize("rotation", ["finite", "small"])
 @pytest.mark.parametrize("rule", RULES)
 def test_coupled_stack_on_firm_soil_converges_to_block_on_pads(rule, rotation):
-    """Error 1/k0 where landings take no impulse: that of the cap's own inertia would remain."""
+    """Error 1/k0 if landings have no impulse; the impulse of the cap's inertia would remain."""
     options = {"restraint": rule, "rotation": rotation}
     with pytest.warns(ModelWarning, match="eps_max"):
         exact = run(block(), pads(restitution=1), **options)
@@ -71,7 +71,7 @@ def test_coupled_stack_on_firm_soil_converges_to_block_on_pads(rule, rotation):
 
 
 def test_heavy_cap_on_firm_soil_converges_to_block_on_pads():
-    """With eps_max the cap recoils at a landing, however firm the soil: error 1/m_c."""
+    """With eps_max the cap recoils at a landing on soil of any stiffness: error 1/m_c."""
     exact = run(block(), pads())
     assert exact.impact_count.item() > 0
     mass = np.array([1e6, 1e7, 1e8])
@@ -190,7 +190,7 @@ def test_too_light_cap_in_coupled_equations_warns(mass):
         if row.dims == ("time",):
             assert np.isfinite(row.values).all(), name
     assert light.energy_residual.item() < 1e-8
-    # what the share stands for
+    # the meaning of the share
     share = cap(width="3.2 m", height="0 m", mass="50 kg")
     assert apart(light, run(block(), pads(), share, soil())) < 1e-3
     heavier = cap(width="3.2 m", height="0 m", mass="500 kg")
@@ -214,7 +214,7 @@ def test_separation_rules_agree_without_damping(rule):
     )
     assert int((one.contact_state != 0).sum()) > 20
     for name in one.data_vars:
-        # a duration is read off between the ends of steps, which the rules place otherwise
+        # a duration is interpolated between ends of steps, which differ between the rules
         rtol = 1e-6 if name == "peak_friction_demand_duration" else 1e-9
         np.testing.assert_allclose(one[name], other[name], rtol=rtol, atol=1e-13, err_msg=name)
 

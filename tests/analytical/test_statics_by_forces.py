@@ -50,7 +50,7 @@ ALONE = list(product(BLOCKS, BASES, ("finite", "small")))
 
 
 class Form(NamedTuple):
-    """What a closed form tells: rise and moment of the middle, ends that bear, what shows."""
+    """Results of a closed form: rise and moment at the middle, bearing ends, outputs."""
 
     rise: float
     moment: float
@@ -111,7 +111,7 @@ def test_held_body_matches_closed_forms(block, base, rotation):
 
 @pytest.mark.parametrize(("block", "base", "rotation"), ALONE)
 def test_force_slopes_match_declared_stiffnesses(block, base, rotation):
-    """Sizes and steps of runs are measured by these."""
+    """Sizes and steps of runs are scaled by these."""
     support = rf.System(BLOCKS[block], BASES[base], rotation=rotation).setting.support
     numbers, standing = support.base_numbers, support.standing
     link, pose = standing.chain.bodies[0], standing.upright[0]
@@ -204,7 +204,7 @@ TOPS = (0.0, 0.9, 0.4)
 
 
 def bodies(beside=0.0, along=0.0):
-    """A block on pads on a block on pads on a plate on a bed; eccentric by a share."""
+    """Return a block on pads on a block on pads on a plate on a bed; eccentric by a share."""
     shapes = ((2.2, 0.55, 0.12), (0.9, 0.7, 0.05), (0.4, 1.1, 0.0))
     links = []
     for k, (height, half, off) in enumerate(shapes):
@@ -227,7 +227,7 @@ def bodies(beside=0.0, along=0.0):
 
 
 def potential(chain, places):
-    """Return the energy of all weights and bases, with bodies placed by rotation and height."""
+    """Return the energy of all weights and bases for rotations and heights of bodies."""
     point, turned, energy = np.zeros(2), 0.0, 0.0
     top = 0.0
     for link, (rotation, rise), mass, above in reversed(
@@ -312,7 +312,7 @@ def test_the_couple_on_three_bodies_is_the_slope_of_their_energy():
 
 @pytest.mark.parametrize("stiffness", ["1e10 N/m", "2e11 N/m", "1e13 N/m", "1e15 N/m"])
 def test_body_on_nearly_rigid_pads_moves_with_body_below(stiffness):
-    """Pads of very different stiffness: the lower body, eccentric, leans on soft ones."""
+    """Pads of very different stiffness: the eccentric lower body leans on soft ones."""
     soft = rf.TwoSpringSupport(stiffness="1 MN/m", damping_ratio=0.1)
     stiff = rf.TwoSpringSupport(stiffness=stiffness, damping_ratio=0.1)
     above = rf.Block(width="0.7 m", height="0.7 m", mass="400 kg")
@@ -331,14 +331,14 @@ def test_body_on_nearly_rigid_pads_moves_with_body_below(stiffness):
     )
 
 
-# laws of one's own --------------------------------------------------------------------------------
+# user-defined laws --------------------------------------------------------------------------------
 
 
 PROP = 500.0
 
 
 class ProppedPads(ElasticPads):
-    """Pads and a spring under the middle, which carries a part of the weight."""
+    """Pads and a spring under the middle, which carries part of the weight."""
 
     __slots__ = ()
 
@@ -363,7 +363,7 @@ def test_base_with_vertical_thrust_starts_in_equilibrium():
 
 
 def test_dashpots_of_ties_damp_small_motion():
-    """A post under the middle of a block: it stands beside both pads as it moves up and down."""
+    """A post under the middle of a block acts in parallel to both pads in vertical motion."""
     mass, stiffness, damping = 5e3, 4e6, 2e4
     block = rf.Block(width="1 m", height="3 m", mass=f"{mass} kg")
     pads = rf.TwoSpringSupport(stiffness=f"{stiffness} N/m", damping=f"{damping} N s/m")

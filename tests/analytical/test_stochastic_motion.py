@@ -1,6 +1,6 @@
 """Stochastic motions against the model that they sample, and against numbers of SMSIM.
 
-The numbers of the other program are those of SMSIM 6.0, D. M. Boore's own, for magnitude 6.0 at
+Reference numbers are those of SMSIM 6.0, the program of D. M. Boore, for magnitude 6.0 at
 20 km with the parameters of Boore and Thompson (2015) for western North America: its output of
 15 January 2018, ``test-bt15_wna`` among the test data of pyRVT.
 """
@@ -269,7 +269,7 @@ def test_each_power_is_distributed_exponentially():
 
 
 def peak_by_random_vibration(model, power):
-    """Expect the peak after Cartwright and Longuet-Higgins (1956), over the model's duration."""
+    """Return the expected peak of Cartwright and Longuet-Higgins (1956) for the duration."""
     frequency = np.linspace(0.0, 80.0, 80_001)
     rate = 2.0 * math.pi * frequency
     squared = (model.displacement_spectrum(frequency) * rate**power) ** 2
@@ -306,7 +306,7 @@ def test_mean_peaks_are_those_of_smsim(many):
         mean["acceleration"] += motion.si.peak / len(many)
         mean["velocity"] += np.abs(history.ground_velocity.values).max() / len(many)
         mean["displacement"] += np.abs(history.ground_displacement.values).max() / len(many)
-    # its own way from random vibrations to peaks is good to some per cent
+    # its own random vibration theory has an error of some per cent
     assert mean["acceleration"] == pytest.approx(0.810, rel=0.05)
     assert mean["velocity"] == pytest.approx(0.0567, rel=0.06)
     assert mean["displacement"] == pytest.approx(0.0181, rel=0.10)
@@ -334,7 +334,7 @@ def test_peaks_grow_with_stress_drop_and_magnitude_and_fall_with_distance():
     assert np.all(np.diff(by_magnitude) > 0.0)
     by_distance = [peaks_over_seeds(replace(SMSIM, distance=1e3 * r), 30) for r in (1, 5, 20, 80)]
     assert np.all(np.diff(by_distance) < 0.0)
-    # near a fault more of it is far away: the peak saturates
+    # the peak saturates near a large fault
     assert by_distance[0] / by_distance[1] < 1.3
 
 
@@ -356,7 +356,7 @@ def test_significant_duration_is_that_of_the_model(many):
     assert max(found) < 1.5 * SMSIM.duration
 
 
-# the ends ------------------------------------------------------------------------------------
+# ends and time steps --------------------------------------------------------------------------
 
 
 @pytest.mark.parametrize(("magnitude", "kilometres"), [(4.0, 5.0), (6.5, 15.0), (8.0, 200.0)])

@@ -22,7 +22,7 @@ GRAVITY = 9.80665
 
 
 def ties(sign=1.0, **changed):
-    """A slack tie at mid-height, and an anchor that yields, on either side."""
+    """Return a slack tie at mid-height and a yielding anchor on either side."""
     upper = rf.Restrainer(
         on=(f"{-0.5 * sign} m", "2 m"), to=(f"{-1.2 * sign} m", "2 m"), name="upper",
         **{"stiffness": "60 kN/m", "slack": "5 mm", "damping": "200 N s/m", **changed},
@@ -51,7 +51,7 @@ def kinds_of(found):
 @pytest.mark.long
 @BASES
 def test_infinite_friction_holds_base(base):
-    """To rounding; on rigid ground the equations are others, and what happens at once is so."""
+    """Up to rounding; equations on rigid ground and simultaneous events differ."""
     endless = {"friction": 1e9}
     if base is GROUND:
         endless |= {"kinetic_friction": 0.5, "impact": "stick"}
@@ -60,7 +60,7 @@ def test_infinite_friction_holds_base(base):
     assert held.peak_rotation > 1e-3
     assert far.attrs["verdict"].startswith("Did not slide")
     assert abs(far.rotation - held.rotation).max() < 1e-11 * held.peak_rotation
-    # up to rest, from which a tie that has no length to spare is taut or slack by rounding
+    # up to rest, after which a tie without slack is taut or slack by rounding
     last = kinds_of(held).index("rest") if "rest" in kinds_of(held) else None
     first = [one.event_time.values[:last] for one in (far, held)]
     np.testing.assert_allclose(*first, rtol=0.0, atol=1e-8)
@@ -104,7 +104,7 @@ def test_energy_balances_with_ties_and_friction(base):
 
 
 def bar(stiffness, **changed):
-    """A bar at the height of the centre of mass of the low block, which stays level."""
+    """Return a bar at the centre of mass of the low block, which stays level."""
     at = {"on": ("1 m", "0.5 m"), "to": ("3 m", "0.5 m")}
     return rf.Restrainer(stiffness=f"{stiffness!r} N/m", compression=True, **at, **changed)
 
@@ -115,7 +115,7 @@ def steady(acceleration, duration=2.0):
 
 
 def test_tied_slide_shows_coulomb_decay():
-    """Each half of a vibration ends 2 mu g/omega^2 nearer to where the spring balances the push."""
+    """Each half cycle ends 2 mu g/omega^2 closer to the balance of spring and push."""
     stiffness, friction, push = 2e4, 0.1, 6.0
     rate, grip = math.sqrt(stiffness / 1e3), friction * GRAVITY
     system = rf.System(LOW, rf.RigidGround(friction=friction), bar(stiffness))
@@ -125,7 +125,7 @@ def test_tied_slide_shows_coulomb_decay():
     expected = half * np.arange(1, 1 + turns.sum())
     np.testing.assert_allclose(found.event_time.values[turns], expected, rtol=0.0, atol=1e-9)
     np.testing.assert_allclose(found.peak_slip, 2.0 * (push - grip) / rate**2, rtol=1e-9)
-    # of the place of balance: push - grip, less 2 grip at each turn, until friction holds it
+    # from the balance: push - grip, less 2 grip at each reversal, until friction holds
     swing, place, sense = (push - grip) / rate**2, 0.0, 1.0
     while True:
         place += sense * 2.0 * swing
@@ -156,7 +156,7 @@ def test_slip_before_and_after_tie_fracture_in_closed_form():
 
 
 def test_tie_fractures_after_uplift_time_of_free_block():
-    """A tie that presses the block down on its corner takes its grip with it."""
+    """A tie that presses the block on its corner increases friction until it breaks."""
     tie = rf.Restrainer(
         on=("-0.5 m", "3 m"), to=("-0.5 m", "-2 m"), stiffness="40 kN/m", strength="3 kN",
         brittle=True,
@@ -173,7 +173,7 @@ def test_tie_fractures_after_uplift_time_of_free_block():
 
 @pytest.mark.parametrize("stiffness", [1e6, 1e8])
 def test_very_stiff_tie_holds_sliding_corner(stiffness):
-    """By half the slip that a spring of that stiffness allows, at each stiffness."""
+    """Within half the slip that a spring of that stiffness allows."""
     start = rf.InitialState(rotation="0.1 rad")
     options = {"duration": "0.15 s", "initial": start, "accuracy": "reference"}
     held = rf.System(BLOCK, rf.RigidGround(friction=10.0, kinetic_friction=0.5)).simulate(**options)
@@ -214,7 +214,7 @@ def test_sliding_block_with_wall_and_load():
 
 
 def stack_with_ties(friction, of_joint, **changed):
-    """Return two blocks with ties, of one to the other and to the ground."""
+    """Return two blocks with ties to each other and to the ground."""
     joint = rf.TwoSpringSupport(frequency_ratio=15, damping_ratio=0.2, friction=of_joint)
     upper = rf.Block(width="0.8 m", height="1.5 m", mass="500 kg")
     stack = rf.Stack(upper, BLOCK.replace(height="1 m"), interfaces=[joint.replace(**changed)])
@@ -237,14 +237,14 @@ def test_a_stack_slides_with_ties():
 
 @pytest.mark.long
 def test_infinite_friction_holds_bases_of_stack():
-    """A restitution acts on bases that friction holds, and otherwise on held ones."""
+    """Restitution is one, since it acts differently on bases held by friction and on held ones."""
     bare, held = (
         run(*parts, restraint="leading-corner", **block)
         for block, parts in (
             stack_with_ties(friction, friction, restitution=1.0) for friction in (None, 1e9)
         )
     )
-    # up to a flight, from which a body that friction takes hold of comes to rest in a while
+    # up to a flight, after which a body with friction comes to rest only after a while
     apart = abs(held.rotation - bare.rotation).sel(time=slice(0.0, 1.1)).max()
     assert apart < 1e-12 * bare.peak_rotation
 
@@ -273,7 +273,7 @@ def test_checked_friction_holds_and_reports_would_slide(base):
 
 @pytest.mark.parametrize("seed", [1, 2])
 def test_block_coming_to_rest_while_sliding_gains_no_energy(seed):
-    """Bounces give the momentum upwards that is left, and friction takes its part of that."""
+    """Bounces transmit the remaining vertical momentum, which limits friction."""
     rng = np.random.default_rng(seed)
     across = 5.0 * np.convolve(rng.normal(size=100), np.ones(6) / 6.0**0.5, "same")
     motion = rf.GroundMotion.from_arrays(

@@ -50,7 +50,7 @@ STEP = 0.0025
 
 
 def components() -> tuple[np.ndarray, np.ndarray]:
-    """Sums of sines below 9 Hz that rise and fade."""
+    """Return sums of sines below 9 Hz that rise and fade."""
     time = np.arange(0.0, 20.0, STEP)
     envelope = (time / 4.0) ** 2 * np.exp(2.0 - time / 2.0)
     first = sum(
@@ -77,7 +77,7 @@ def noise(seed: int, count: int = 300) -> rf.GroundMotion:
 
 def recorded() -> rf.HorizontalPair:
     pair = rf.HorizontalPair.read(record_path("GEONET_20180212_211557_WPWS_20.V2A"))
-    # that library takes a record for band-limited, not for straight between its samples
+    # pyrotd takes a record as band-limited, not as linear between its samples
     return rf.HorizontalPair(pair.first.resampled("0.0025 s"), pair.second.resampled("0.0025 s"))
 
 
@@ -87,7 +87,7 @@ def test_rotated_spectra_match_stored_pyrotd_values(which):
     found = rf.rotated_spectrum(pair, (PERIODS, "s"))
     for name, expected in PYROTD[which].items():
         np.testing.assert_allclose(found[name].values[0], expected, rtol=0.005, err_msg=name)
-    # the library's own average is that of its ordinates
+    # the average over its own ordinates
     average = rf.average_spectral_acceleration(pair, (PERIODS, "s"))
     for name, mine in (
         (NAMES[0], "average_median_rotated_acceleration"),
@@ -110,7 +110,7 @@ def test_rotated_spectra_match_installed_pyrotd():
 
 
 def displacement(samples: np.ndarray, step: float, period: float, damping: float) -> np.ndarray:
-    """Return that of an oscillator under straight lines and then still ground, by SciPy."""
+    """Return the displacement of an oscillator under a piecewise linear motion, by SciPy."""
     omega = 2.0 * np.pi / period
     parts = max(10, math.ceil(200.0 * step / period))
     time = np.arange(0.0, (samples.size - 1) * step + 4.0 * period, step / parts)
@@ -170,7 +170,7 @@ def test_rotated_spectrum_matches_spectra_of_rotated_motions():
 
 
 def test_motion_in_one_direction_only():
-    """Of a motion in one direction RotD50 is that of the cosine, RotD100 the motion's own."""
+    """RotD50 has the factor of the median cosine, RotD100 equals the spectrum of the motion."""
     motion = noise(4)
     angle = math.radians(30.0)
     pair = rf.HorizontalPair(motion.scaled(math.cos(angle)), motion.scaled(math.sin(angle)))
@@ -238,7 +238,7 @@ def test_rotation_to_azimuth_includes_vertical_component():
     assert north.vertical_acceleration is not None
     angle = math.radians(196.0)
     first, second = (one.samples for one in pair.signals)
-    # S16W points to 196 degrees, S74E to 106: north is where both cosines say
+    # S16W points to 196 degrees, S74E to 106: components by their cosines
     expected = math.cos(angle) * first + math.cos(math.radians(106.0)) * second
     np.testing.assert_allclose(north.si.horizontal.samples, expected, atol=1e-12)
 

@@ -72,7 +72,7 @@ def test_soil_too_soft_to_hold_the_block_has_no_rocking_frequency():
 
 
 def test_overdamped_modes_are_separated():
-    """Damping in proportion to stiffness: each mode is an oscillator of its own."""
+    """With damping proportional to stiffness each mode is an oscillator."""
     rng = np.random.default_rng(4)
     shapes = np.linalg.qr(rng.normal(size=(4, 4)))[0]
     frequencies = np.array([1.0, 2.0, 3.0, 5.0])
@@ -139,7 +139,7 @@ def test_frequencies_of_block_and_cap_as_one_body():
 @pytest.mark.parametrize("separation", SEPARATIONS)
 @pytest.mark.parametrize("bed", BEDS)
 def test_tiny_free_rocking_is_one_damped_oscillator(bed, separation):
-    # the vertical motion that goes with it is of second order
+    # the accompanying vertical motion is of second order
     start = (2e-8, -3e-8)
     response = (
         replace(bed, separation=separation)
@@ -186,7 +186,7 @@ def test_free_vertical_vibration_is_one_damped_oscillator(bed, separation):
 @pytest.mark.parametrize("rotation", ["finite", "small"])
 @pytest.mark.parametrize("bed", BEDS)
 def test_vertical_motion_alone_is_one_damped_oscillator(bed, rotation):
-    """As far as full contact goes, not only near rest."""
+    """In all of full contact, not only near rest."""
     peak = 0.1 * bed.gravity if bed.damping_ratio == 0.0 else 0.4 * bed.gravity
     upwards = rough_record(401, STEP, peak, seed=11)
     motion = rf.GroundMotion.from_arrays(
@@ -209,8 +209,8 @@ def test_vertical_motion_alone_is_one_damped_oscillator(bed, rotation):
 @pytest.mark.parametrize("rotation", ["finite", "small"])
 @pytest.mark.parametrize("bed", BEDS)
 def test_weak_horizontal_motion_is_one_damped_oscillator(bed, rotation, rule):
-    # what is left out is of second order in the rotation, and of first order where the
-    # leading corner is held (x' = h + b |a|): the motion is so weak that neither shows
+    # the neglected terms are of second order in the rotation, and of first order where the
+    # leading corner is held (x' = h + b |a|): both are negligible in so weak a motion
     across = rough_record(401, STEP, 1e-5 if rule == "leading-corner" else 1e-4, seed=12)
     motion = rf.GroundMotion.from_arrays((across, "m/s^2"), f"{STEP} s")
     response = bed.system(rotation=rotation, restraint=rule).simulate(motion, accuracy="reference")
@@ -230,7 +230,7 @@ def test_weak_horizontal_motion_is_one_damped_oscillator(bed, rotation, rule):
 @pytest.mark.parametrize("rule", ["contact-state", "centre"])
 @pytest.mark.parametrize("damping_ratio", [0.0, 0.2])
 def test_springs_at_gauss_points_match_bed(damping_ratio, rule, rotation):
-    """k = b k0 and c = b c0 at b/sqrt(3): the same resultants as long as all of the base bears."""
+    """k = b k0 and c = b c0 at b/sqrt(3): the same resultants in full contact."""
     bed = Bed(damping_ratio=damping_ratio)
     apart = bed.half_width / math.sqrt(3.0)
     narrow = rf.Block(
@@ -288,7 +288,7 @@ def stack(**options):
 
 
 def linearised():
-    """Mass, damping and stiffness of (Y, phi, r, psi) at rest, from a Lagrangian."""
+    """Return mass, damping and stiffness of (Y, phi, r, psi) at rest, from a Lagrangian."""
     names = "b h m i k c bc hc mc ic k0 c0 g"
     b, h, m, i, k, c, bc, hc, mc, ic, k0, c0, g = sp.symbols(names, positive=True)
     q = sp.Matrix(sp.symbols("Y phi r psi"))
@@ -352,7 +352,7 @@ def test_modes_of_block_and_cap_are_those_of_their_lagrangian(linear, rotation, 
 
 
 def test_shapes_of_the_modes_without_damping(linear):
-    """Heights and rotations of block and cap, each mode's largest being 1."""
+    """Heights and rotations of block and cap, with the largest of each mode scaled to 1."""
     mass, _, stiffness = linear
     rates, shapes = np.linalg.eigh(np.linalg.solve(np.linalg.cholesky(mass), np.linalg.solve(
         np.linalg.cholesky(mass), stiffness).T))  # fmt: skip
