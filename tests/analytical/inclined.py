@@ -27,7 +27,7 @@ class Stone:
     inertia: float  # about the centre of mass
     offset: float = 0.0
 
-    def seen_from(self, point, rotation):
+    def relative_to(self, point, rotation):
         """Return the centre of mass relative to a point of the base, in a rotated block."""
         right, up = self.offset - point, self.height
         s, c = math.sin(rotation), math.cos(rotation)
@@ -52,12 +52,12 @@ def rocking(stone, inclination, ground, end, times):
         return -stone.mass * (ground(time) + np.array([0.0, G]))
 
     def polar(side):
-        arm = stone.seen_from(corners[side], level)
+        arm = stone.relative_to(corners[side], level)
         return stone.inertia + stone.mass * (arm @ arm)
 
     def tipping(time, side):
         """Return the moment about a corner at rest, towards its side."""
-        return side * clockwise(stone.seen_from(corners[side], level), load(time))
+        return side * clockwise(stone.relative_to(corners[side], level), load(time))
 
     def next_start(time):
         """Return when and to which side a block at rest begins to uplift."""
@@ -79,7 +79,7 @@ def rocking(stone, inclination, ground, end, times):
         arm_inertia = polar(side)
 
         def slope(t, z, side=side, arm_inertia=arm_inertia):
-            return [z[1], clockwise(stone.seen_from(corners[side], z[0]), load(t)) / arm_inertia]
+            return [z[1], clockwise(stone.relative_to(corners[side], z[0]), load(t)) / arm_inertia]
 
         def landing(t, z, side=side):
             return side * (z[0] - level)
@@ -92,7 +92,7 @@ def rocking(stone, inclination, ground, end, times):
         time, state = run.t[-1], run.y[:, -1]
         if run.status != 1:
             break
-        old, new = (stone.seen_from(corners[s], level) for s in (side, -side))
+        old, new = (stone.relative_to(corners[s], level) for s in (side, -side))
         side = -side
         rate = state[1] * (stone.inertia + stone.mass * (old @ new)) / polar(side)
         restoring = -tipping(time, side) / polar(side)
@@ -125,7 +125,7 @@ class OnPads:
         """
         stone = self.stone
         points = (-stone.half_width, stone.half_width, 0.0)
-        arms = [-stone.seen_from(point, place[2]) for point in points]
+        arms = [-stone.relative_to(point, place[2]) for point in points]
         # a clockwise rate turns (x, y) to (y, -x)
         turning = [velocity[:2] + velocity[2] * np.array([arm[1], -arm[0]]) for arm in arms]
         return arms, turning
@@ -166,14 +166,14 @@ class OnPads:
         """Return where the block is at rest, both pads bearing."""
         along, _ = self.axes
 
-        def lack(place):
+        def residual(place):
             found = self.accelerations(0.0, place, np.zeros(3), (True, True),
                                        lambda t: np.zeros(2))  # fmt: skip
             held = along @ (place[:2] + self.placed(place, np.zeros(3))[0][2])
             return [found[1], found[2], held]
 
-        guess = np.array([*self.stone.seen_from(0.0, -self.inclination), -self.inclination])
-        return root(lack, guess, tol=1e-13).x
+        guess = np.array([*self.stone.relative_to(0.0, -self.inclination), -self.inclination])
+        return root(residual, guess, tol=1e-13).x
 
     def response(self, ground, end, times):
         """Return rotation, and displacements along and off the slope, from rest."""

@@ -117,7 +117,7 @@ def test_the_ground_of_the_second_stage_is_the_motion_of_the_cap_s_top():
 # stage 2 ----------------------------------------------------------------------------------------
 
 
-def jumps_of_the_top(first, rule):
+def jumps_of_top(first, rule):
     """Return times and sizes of jumps of the top's velocity, where the first body is re-pinned."""
     if rule != "contact-state":
         return []
@@ -136,13 +136,13 @@ def jumps_of_the_top(first, rule):
     return jumps
 
 
-def second_by_hand(step, rule):
+def reference_second_stage(step, rule):
     run = {"output_step": f"{step!r} s", **RUN}
     whole = cascade(restraint=rule).simulate(pulse(), **run)
     first = body_on_soil(restraint=rule).simulate(pulse(), overturning="continue", **run)
     across = whole.cap_acceleration.values.copy()
     upwards = whole.cap_vertical_acceleration.values.copy()
-    for time, jump_x, jump_y in jumps_of_the_top(first, rule):
+    for time, jump_x, jump_y in jumps_of_top(first, rule):
         # an impulse between two samples, with its area and its centre
         i, share = divmod(time / step, 1.0)
         for sample, weight in ((int(i), 1.0 - share), (int(i) + 1, share)):
@@ -164,7 +164,7 @@ def test_the_second_stage_is_the_block_on_its_pads_on_the_moving_cap(rule):
     steps = (4e-3, 1e-3, 2.5e-4)
     errors = []
     for step in steps:
-        whole, second = second_by_hand(step, rule)
+        whole, second = reference_second_stage(step, rule)
         assert second.impact_count.item() > 0
         scale = np.abs(second.rotation.values).max()
         errors.append(np.abs(whole.rotation_on_cap - second.rotation).max().item() / scale)

@@ -77,8 +77,8 @@ def test_one_sine_pulse_has_safe_gap_between_overturning_modes(ratio):
         assert brackets(found, 2, threshold, within=1e-8)
         assert found.followed_scale.item() >= found.critical_scale.item()
         # in the gap the second half of the sine returns the block from beyond theta
-        stands = found.outcome == found.outcome.flag_meanings.split().index("stands")
-        gap = stands & (found.scale > upper) & (found.scale < threshold)
+        standing = found.outcome == found.outcome.flag_meanings.split().index("stands")
+        gap = standing & (found.scale > upper) & (found.scale < threshold)
         assert gap.any()
         assert (found.peak_rotation[gap] > THETA).all()
         reached = critical(pulse, **options)

@@ -71,10 +71,10 @@ def test_confidence_intervals_from_noisy_peaks_cover_restitution():
     for seed in range(12):
         random = np.random.default_rng(seed)
         noisy = peaks + 1e-3 * theta * random.normal(size=7)
-        given = (noisy, "rad")
+        measured = (noisy, "rad")
         if seed % 2:
-            given = ((times + 0.02 * random.normal(size=7), "s"), given)
-        found = rf.fit_free_decay(system, peaks=given)
+            measured = ((times + 0.02 * random.normal(size=7), "s"), measured)
+        found = rf.fit_free_decay(system, peaks=measured)
         bounds = found.lower_confidence_bound[0], found.upper_confidence_bound[0]
         inside.append(float(bounds[0]) < restitution < float(bounds[1]))
     assert np.mean(inside) >= 0.83

@@ -63,8 +63,8 @@ class Corner:
         """Restitution of an impact on this corner, from rotation about the other one."""
         other = Corner(-self.side)
         # the centre of mass has the velocity (H, -distance) per rate about the other corner
-        kept = INERTIA + MASS * (H * H - self.distance * other.distance)
-        return kept / self.inertia
+        transferred = INERTIA + MASS * (H * H - self.distance * other.distance)
+        return transferred / self.inertia
 
 
 def rectangle(acceleration, duration):
@@ -202,8 +202,8 @@ def test_free_rocking():
             assert after[i] == pytest.approx(now.side * speed, rel=1e-7)
             expected += 2.0 / now.p * math.atanh(speed / (now.p * now.theta))
         # a full cycle retains the product of both
-        kept = Corner(LEFT).restitution * Corner(RIGHT).restitution
-        np.testing.assert_allclose(before[2:] / before[:-2], kept, rtol=1e-8)
+        product = Corner(LEFT).restitution * Corner(RIGHT).restitution
+        np.testing.assert_allclose(before[2:] / before[:-2], product, rtol=1e-8)
 
 
 def test_impact_energy_loss_in_closed_form():
@@ -267,7 +267,7 @@ def test_reactions_at_rest_on_rigid_ground():
 # rest on pads and soil ------------------------------------------------------------------------
 
 
-def check_rest(system, rotation, vertical):
+def assert_at_rest(system, rotation, vertical):
     """Check that an undisturbed run stays at its initial equilibrium."""
     rest = system.equilibrium()
     assert rest.rest_rotation.item() == pytest.approx(rotation, rel=1e-12)
@@ -285,7 +285,9 @@ def test_tilted_rest_on_pads():
     matrix[1, 1] -= WEIGHT * H
     delta = 0.5 * WEIGHT / K
     level, angle = np.linalg.solve(matrix, [0.0, 2.0 * K * delta * E])
-    rest, response = check_rest(scene("pads", rotation="small"), angle, level - 0.5 * H * angle**2)
+    rest, response = assert_at_rest(
+        scene("pads", rotation="small"), angle, level - 0.5 * H * angle**2
+    )
     left = K * (delta - level - (B + E) * angle)
     assert rest.static_left_reaction.item() == pytest.approx(left, rel=1e-12)
     assert rest.static_right_reaction.item() == pytest.approx(WEIGHT - left, rel=1e-12)
@@ -300,13 +302,13 @@ def test_tilted_rest_on_pads():
 def test_tilted_rest_on_pads_by_finite_rotation():
     delta = 0.5 * WEIGHT / K
 
-    def lack(angle):
+    def residual(angle):
         sine, cosine = math.sin(angle), math.cos(angle)
         return B * B * sine * cosine / delta - H * sine - E * cosine
 
-    angle = brentq(lack, 0.0, 0.05, xtol=1e-16)
+    angle = brentq(residual, 0.0, 0.05, xtol=1e-16)
     rise = -H * (1.0 - math.cos(angle)) - E * math.sin(angle)
-    _, response = check_rest(scene("pads"), angle, rise)
+    _, response = assert_at_rest(scene("pads"), angle, rise)
     corner = response.sel(point="left")
     np.testing.assert_allclose(corner.point_vertical_displacement, B * math.sin(angle), rtol=1e-10)
     assert response.residual_settlement.item() == pytest.approx(0.0, abs=1e-15)
@@ -317,7 +319,7 @@ def test_tilted_rest_on_soil():
     full = WEIGHT * E / (K0 * (2.0 * B) ** 3 / 12.0 - WEIGHT * H)
     delta = WEIGHT / (2.0 * B * K0)
     assert B * full < delta
-    rest, response = check_rest(
+    rest, response = assert_at_rest(
         scene("soil", rotation="small"), full, -0.5 * H * full**2 - E * full
     )
     assert rest.static_soil_reaction.item() == pytest.approx(WEIGHT, rel=1e-13)
@@ -331,7 +333,7 @@ def test_tilted_rest_on_soil():
     )
     raised = (math.sqrt(B * part) - math.sqrt(delta)) ** 2
     system = rf.System(far, SOIL, rotation="small")
-    _, response = check_rest(system, -part, raised - 0.5 * H * part**2 - 0.55 * part)
+    _, response = assert_at_rest(system, -part, raised - 0.5 * H * part**2 - 0.55 * part)
     np.testing.assert_allclose(response.contact_length, length / math.sqrt(part), rtol=1e-10)
     assert response.residual_settlement.item() == pytest.approx(-raised, rel=1e-9)
 
@@ -490,11 +492,13 @@ def test_runs_start_from_rest_rotation_or_initial_state():
         plain = system.simulate(PULSE)
         moving = system.simulate(PULSE, initial=rf.InitialState(angular_velocity="0.02 rad/s"))
         upright = system.simulate(PULSE, initial=rf.InitialState(rotation="0 rad"))
-        told = system.simulate(PULSE, initial=rf.InitialState(rotation=f"{lean!r} rad"))
+        explicit = system.simulate(PULSE, initial=rf.InitialState(rotation=f"{lean!r} rad"))
         assert plain.rotation.values[0] == moving.rotation.values[0] == pytest.approx(lean)
         assert moving.angular_velocity.values[0] == pytest.approx(0.02)
         assert upright.rotation.values[0] == 0.0
-        np.testing.assert_allclose(told.rotation.values[:20], plain.rotation.values[:20], atol=1e-6)
+        np.testing.assert_allclose(
+            explicit.rotation.values[:20], plain.rotation.values[:20], atol=1e-6
+        )
         # in two parts: the second run continues the first
         first = system.simulate(PULSE.window(end="0.4 s"), accuracy="reference")
         second = system.simulate(
@@ -539,7 +543,11 @@ def test_restitution_that_adds_energy_is_in_cautions():
     gains, loses = run(1.0), run(0.999 * most)
     assert np.diff(gains.impact_energy).min() < 0.0
     assert np.diff(loses.impact_energy).min() >= 0.0
-    told = "impacts on the left corner, about which the block has more inertia than about the other"
-    assert f"{told} one, give energy with a restitution above {most:.6g}" in gains.attrs["cautions"]
+    message = (
+        "impacts on the left corner, about which the block has more inertia than about the other"
+    )
+    assert (
+        f"{message} one, give energy with a restitution above {most:.6g}" in gains.attrs["cautions"]
+    )
     assert "on the right corner" not in gains.attrs["cautions"]
     assert "give energy" not in loses.attrs["cautions"]

@@ -27,7 +27,7 @@ def close(found, expected, share):
     np.testing.assert_allclose(found, expected, rtol=0.0, atol=share * np.abs(expected).max())
 
 
-def ground_of(floor, samples=NOISE):
+def ground_at_samples(floor, samples=NOISE):
     """Return the ground motion at the floor's samples, at rest after its end."""
     return np.append(samples, np.zeros(len(floor) - samples.size))
 
@@ -57,7 +57,7 @@ def test_single_mode_floor_matches_integrated_oscillator():
             return [y[1], -a - 2.0 * damping * omega * y[1] - omega**2 * y[0]]
 
         floor = motion().through_storeys([f"{period} s"], damping, free_vibration="0.3 s")
-        states = integrate(slope, 2, ground_of(floor))
+        states = integrate(slope, 2, ground_at_samples(floor))
         expected = -2.0 * damping * omega * states[:, 1] - omega**2 * states[:, 0]
         close(floor.si.horizontal.samples, expected, 1e-9)
 
@@ -89,7 +89,7 @@ def test_three_storeys_of_masses_and_springs():
             **building, floor=floor, damping_ratio=ratios.tolist(), free_vibration="0.5 s"
         )
         if floor == 1:
-            states = integrate(slope, 6, ground_of(found))
+            states = integrate(slope, 6, ground_at_samples(found))
         expected = np.array([relative(y)[floor - 1] for y in states])
         close(found.si.horizontal.samples, expected, 1e-9)
 
@@ -117,7 +117,7 @@ def test_floor_samples_match_exact_recurrence():
     for period in (0.02, 0.08, 0.5, 20.0):
         for damping, share in ((0.0, 1e-12), (0.05, 1e-13), (1.0, 1e-13)):
             floor = motion().through_storeys([f"{period} s"], damping, free_vibration="1 s")
-            expected = exact(ground_of(floor), period, damping)
+            expected = exact(ground_at_samples(floor), period, damping)
             close(floor.si.horizontal.samples, expected, share)
 
 
@@ -129,7 +129,7 @@ def test_finer_time_step_gives_same_floor_motion():
         )
         assert fine.si.time_step == DT / parts
         close(fine.si.horizontal.samples[::parts], coarse.si.horizontal.samples, 1e-13)
-    ground = ground_of(coarse)
+    ground = ground_at_samples(coarse)
     expected = (
         0.1 * ground + 1.3 * exact(ground, 0.15, 0.05) - 0.4 * exact(ground, 0.04, 0.05)
     )  # fmt: skip
@@ -212,7 +212,7 @@ def test_stiff_floors_follow_ground_and_soft_floors_stand_still():
     smooth = np.convolve(NOISE, np.hanning(30), "full")
     for period, rest in (("0 s", 0.0), ("1e-5 s", 1e-4), ("0.001 s", 1e-2)):
         floor = motion(smooth).through_storeys([period], 0.05).si.horizontal.samples
-        close(floor, ground_of(floor, smooth), rest)
+        close(floor, ground_at_samples(floor, smooth), rest)
     peak = np.abs(smooth).max()
     for period in (1e3, 1e5):
         floor = motion(smooth).through_storeys([f"{period} s"], 0.0, free_vibration="0 s")

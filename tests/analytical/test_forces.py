@@ -270,8 +270,8 @@ def test_force_peaks_bound_their_histories(response):
 @pytest.mark.parametrize("scene", ["rigid ground", "pads"])
 def test_residuals_are_taken_at_end_between_samples(scene):
     runs = [
-        SCENES[scene].simulate(PULSE, duration="1.3 s", **asked)
-        for asked in (
+        SCENES[scene].simulate(PULSE, duration="1.3 s", **outputs)
+        for outputs in (
             {},
             {"output_step": "0.2 s"},
             {"outputs": None, "points": {"top": ("0 m", f"{H} m")}},
@@ -342,8 +342,8 @@ def test_verdict_reports_friction_demand():
     response = SCENES["rigid ground"].simulate(PULSE)
     needed = response.peak_friction_demand.item()
     lasted = response.peak_friction_demand_duration.item()
-    told = f"Friction needed: {needed:.3g}, more than half of it for {lasted:.3g} s in all."
-    assert response.attrs["verdict"].endswith(told)
+    sentence = f"Friction needed: {needed:.3g}, more than half of it for {lasted:.3g} s in all."
+    assert response.attrs["verdict"].endswith(sentence)
     at_rest = SCENES["rigid ground"].simulate(PULSE.scaled(0.0))
     assert at_rest.peak_friction_demand == 0.0
     for other in (at_rest, SCENES["rigid ground"].simulate(PULSE, outputs=None)):
@@ -374,9 +374,9 @@ DRY = rf.RigidGround()
     ids=["tendon", "load", "tie", "frame", "stack"],
 )
 def test_described_friction_to_rock_is_demand_at_uplift(system):
-    told = " ".join(system.describe().split())
-    least = min(map(float, re.findall(r"friction to rock, at least (?:b/h )?([\d.]+)", told)))
-    found = re.findall(r"as one at xg'' of ([\d.]+)|preload holds, ([\d.]+)", told)
+    text = " ".join(system.describe().split())
+    least = min(map(float, re.findall(r"friction to rock, at least (?:b/h )?([\d.]+)", text)))
+    found = re.findall(r"as one at xg'' of ([\d.]+)|preload holds, ([\d.]+)", text)
     starts = min(float(one or other) for one, other in found)
     for share, rocks in ((0.998, False), (1.002, True)):
         level = share * starts
@@ -389,7 +389,7 @@ def test_described_friction_to_rock_is_demand_at_uplift(system):
 
 
 def test_description_lists_friction_to_rock_of_each_base_and_free_side():
-    told = " ".join(rf.System(rf.Stack(BLOCK, DRUM, interfaces=[DRY]), DRY).describe().split())
+    text = " ".join(rf.System(rf.Stack(BLOCK, DRUM, interfaces=[DRY]), DRY).describe().split())
     height = (50.0 * (3.0 + H) + 60.0 * 1.5) / 110.0
     for words in (
         "body 1: overturning angle theta, Eq. (1) 0.244979 rad",
@@ -397,7 +397,7 @@ def test_description_lists_friction_to_rock_of_each_base_and_free_side():
         f"base 2: friction to rock, at least b/h {1.4 / height:.6g} ",
         f"base 2: rigid, all above rocks as one at xg'' of {G * 1.4 / height:.4g} m s^-2",
     ):
-        assert words in told
+        assert words in text
     leaning = rf.Block(
         width="1 m", height="4 m", mass="4 t", inertia="5 t*m^2", centre_of_mass=("2 m", "0.2 m")
     )
@@ -417,14 +417,14 @@ def test_too_little_friction_warns_with_time_and_duration():
     text = str(caught[0].message)
     first = time[demand > 0.25][0]
     lasted = (demand > 0.25).sum() * (time[1] - time[0])
-    told = float(text.split(" from ")[1].split(" s on")[0])
+    stated = float(text.split(" from ")[1].split(" s on")[0])
     assert response.would_slide
-    assert response.sliding_time == pytest.approx(told, rel=1e-3)
-    assert first - (time[1] - time[0]) <= told <= first
+    assert response.sliding_time == pytest.approx(stated, rel=1e-3)
+    assert first - (time[1] - time[0]) <= stated <= first
     assert float(text.split("for ")[1].split(" s in all")[0]) == pytest.approx(lasted, rel=0.05)
     assert f"needs {reference.peak_friction_demand.item():.3g} of 0.25, " in text
-    said = text.removeprefix("the block ").removesuffix("; the model holds it")
-    assert response.attrs["verdict"].endswith(f"; 1 impact. {said.capitalize()}.")
+    statement = text.removeprefix("the block ").removesuffix("; the model holds it")
+    assert response.attrs["verdict"].endswith(f"; 1 impact. {statement.capitalize()}.")
     assert response.attrs["cautions"] == text
     np.testing.assert_array_equal(response.rotation, reference.rotation)
     most = reference.peak_friction_demand.item()

@@ -54,8 +54,8 @@ def test_rotation_is_a_hyperbolic_cosine(share):
 
 def decay(share, ratio, impacts):
     """Return peak rotations over theta after each impact of the linearised block."""
-    gone = ratio ** np.arange(1, impacts + 1) * (1.0 - (1.0 - share) ** 2)
-    return 1.0 - np.sqrt(1.0 - gone)
+    shares = ratio ** np.arange(1, impacts + 1) * (1.0 - (1.0 - share) ** 2)
+    return 1.0 - np.sqrt(1.0 - shares)
 
 
 @pytest.mark.parametrize("share", [0.25, 0.5, 0.9])

@@ -21,7 +21,7 @@ STEP = 0.02
 END = 4.0
 
 
-def stone_of(block):
+def reference_block(block):
     si = block.si
     return Stone(si.half_width, si.centre_height, si.mass, si.inertia, si.eccentricity)
 
@@ -68,8 +68,10 @@ def test_rigid_ground_against_true_axes(name):
     found = system.simulate(motion, duration=f"{END} s", accuracy=1e-12)
     assert found.impact_count.item() > 3
     assert not found.overturned.item()
-    wanted = rocking(stone_of(block), math.radians(degrees), ground, END, found.time.values)
-    apart = np.abs(found.rotation.values - wanted).max()
+    expected = rocking(
+        reference_block(block), math.radians(degrees), ground, END, found.time.values
+    )
+    apart = np.abs(found.rotation.values - expected).max()
     assert apart < 1e-7 * THETA, apart / THETA
 
 
@@ -86,14 +88,14 @@ def test_pads_against_true_axes(name):
     with pytest.warns(ModelWarning, match="exceeds eps_max"):
         system = rf.System(block, pads, restraint="centre", inclination=f"{degrees} deg")
     found = system.simulate(motion, duration="1.2 s", accuracy=1e-12)
-    one = OnPads(stone_of(block), math.radians(degrees), stiffness, damping)
-    rotation, along, off, switches = one.response(ground, 1.2, found.time.values)
+    reference = OnPads(reference_block(block), math.radians(degrees), stiffness, damping)
+    rotation, along, off, switches = reference.response(ground, 1.2, found.time.values)
     assert switches > 4
     assert np.abs(found.rotation.values - rotation).max() < 1e-7 * THETA
     size = 1e-7 * THETA * HEIGHT
-    for name, wanted in (("horizontal_displacement", along), ("vertical_displacement", off)):
+    for name, expected in (("horizontal_displacement", along), ("vertical_displacement", off)):
         moved = found[name].values - found[name].values[0]
-        assert np.abs(moved - wanted).max() < size, name
+        assert np.abs(moved - expected).max() < size, name
 
 
 def test_block_falls_beyond_slope_of_its_downhill_corner():

@@ -57,10 +57,10 @@ def test_the_gap_of_zhang_and_makris():
 def test_relative_amplitudes_use_peak_ground_acceleration():
     """A tenth of a sine has its peak at sin(0.2 pi) of its amplitude."""
     levels = np.array([1.0, 3.0]) * UPLIFT
-    given = {"amplitude": (levels, "m/s^2"), "frequency": ([1.0, 2.0], "Hz"), "progress": False}
+    axes = {"amplitude": (levels, "m/s^2"), "frequency": ([1.0, 2.0], "Hz"), "progress": False}
     block = rigid_block(THETA, restitution=0.9, rotation="small")
     short = rf.GroundMotion.sine_pulse("1 m/s^2", "1 Hz", cycles=0.1)
-    found = rf.overturning_map(block, short, **given)
+    found = rf.overturning_map(block, short, **axes)
     expected = math.sin(0.2 * math.pi) * np.array([1.0, 3.0])
     assert found.relative_peak_ground_acceleration.values == pytest.approx(expected, rel=1e-9)
 
@@ -68,7 +68,7 @@ def test_relative_amplitudes_use_peak_ground_acceleration():
         cycles = 0.1 * frequency.m_as("Hz")
         return rf.GroundMotion.sine_pulse(amplitude, frequency, cycles=cycles)
 
-    found = rf.overturning_map(block, longer, **given)  # any function of an amplitude
+    found = rf.overturning_map(block, longer, **axes)  # any function of an amplitude
     assert "relative_peak_ground_acceleration" not in found.coords
     assert rf.plot.overturning_map(found).get_ylabel().startswith("amplitude")
 

@@ -143,9 +143,9 @@ def test_set_around_critical_scale_splits_into_safe_and_overturning_parts():
     assert 0.45 < found.overturning_share <= 0.5
     assert "proved safe for ever and" in str(found)
     for shift, verdict in ((-1e-3, "safe for ever"), (1e-3, "overturns")):
-        beside = rf.prove(scene, motion, scale=at + shift, scale_tolerance=0.9e-3, parts=64)
-        assert beside.verdict == verdict
-        assert 1.0 in (beside.safe_share, beside.overturning_share)
+        nearby = rf.prove(scene, motion, scale=at + shift, scale_tolerance=0.9e-3, parts=64)
+        assert nearby.verdict == verdict
+        assert 1.0 in (nearby.safe_share, nearby.overturning_share)
 
 
 @pytest.mark.parametrize(("slenderness", "scale"), [(4, 0.5), (4, 0.577), (6, 0.34), (6, 0.38)])
@@ -182,9 +182,9 @@ def test_a_set_of_angles_scales_and_restitutions_has_the_verdict_of_its_middle(s
 )
 def test_unsupported_scenes_are_refused(change, words):
     block = rf.Block(width="1 m", height="4 m", mass="1 t")
-    scene, motion, *given = change(block, half_sine())
+    scene, motion, *options = change(block, half_sine())
     with pytest.raises(ComponentError, match=words):
-        rf.prove(scene, motion, **(given[0] if given else {}))
+        rf.prove(scene, motion, **(options[0] if options else {}))
 
 
 def test_critical_scale_is_bracketed_from_any_start():

@@ -88,7 +88,7 @@ def test_newton_law_and_numeric_restitution():
 
 
 @pytest.mark.parametrize(
-    ("given", "words"),
+    ("arguments", "words"),
     [
         ({"restitution": "newton"}, "needs wall_restitution"),
         ({"wall_restitution": 0.3}, "goes with restitution"),
@@ -96,9 +96,9 @@ def test_newton_law_and_numeric_restitution():
         ({"side": "behind"}, "left"),
     ],
 )
-def test_invalid_wall_is_refused(given, words):
+def test_invalid_wall_is_refused(arguments, words):
     with pytest.raises(RockframeError, match=words):
-        rf.RearWall(**given)
+        rf.RearWall(**arguments)
 
 
 def test_wall_refuses_incompatible_parts_and_states():

@@ -196,16 +196,16 @@ def test_slip_that_stops_within_impact_reverses_or_sticks():
     for _ in range(40):
         friction, slip, sinking = rng.uniform(0.02, 0.5), rng.uniform(-0.3, 0.3), -rng.uniform(0, 1)
         one = system._replace(impulsive=friction)
-        beside, above = rng.choice([-0.5, 0.5]), 2.0
-        along, normal = one.impact_impulses(beside, above, 1.0, slip, sinking)
+        ahead, above = rng.choice([-0.5, 0.5]), 2.0
+        along, normal = one.impact_impulses(ahead, above, 1.0, slip, sinking)
         u, n, x, y, start = slip, sinking, 0.0, 0.0, math.copysign(1.0, slip)
         part = normal / 20000.0
         while n < 0.0:
-            held = -u / part + beside * above / one.inertia
+            held = -u / part + ahead * above / one.inertia
             held /= 1.0 + above * above / one.inertia
             ratio = min(max(held, -friction), friction)
-            u += part * (ratio * (1.0 + above**2 / one.inertia) - beside * above / one.inertia)
-            n += part * (1.0 + beside**2 / one.inertia - ratio * beside * above / one.inertia)
+            u += part * (ratio * (1.0 + above**2 / one.inertia) - ahead * above / one.inertia)
+            n += part * (1.0 + ahead**2 / one.inertia - ratio * ahead * above / one.inertia)
             x, y = x + ratio * part, y + part
         assert (x, y) == pytest.approx((along, normal), abs=2e-4 * (1.0 + normal))
         reversed_ones += abs(u) > 1e-3 and u * start < 0.0
@@ -327,9 +327,9 @@ def test_block_sliding_down_slope_by_its_weight_warns():
 
 
 def test_inconsistent_friction_and_kinematics_are_refused():
-    for given in ({"kinetic_friction": 0.3}, {"friction": 0.2, "kinetic_friction": 0.3}):
+    for options in ({"kinetic_friction": 0.3}, {"friction": 0.2, "kinetic_friction": 0.3}):
         with pytest.raises(ComponentError, match="kinetic_friction"):
-            rf.RigidGround(**given)
+            rf.RigidGround(**options)
     with pytest.raises(AssemblyError, match="sliding='checked'"):
         standing(SLENDER, 0.3, rotation="small")
 

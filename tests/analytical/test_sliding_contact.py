@@ -86,7 +86,7 @@ def drop(model, sign=1.0, speed=-0.05, duration=TIME):
     )
 
 
-def by_friction(start, coefficient, times):
+def dry_friction_reference(start, coefficient, times):
     """Integrate the corner on its pad against dry friction while it slips."""
 
     def rates(t, z):
@@ -114,7 +114,7 @@ def test_sliding_contact_is_the_limit_of_dry_friction():
     times = run.time[sliding] - run.events.time[landing]
     differences = []
     for coefficient in (40.0, 160.0, 640.0):
-        z = by_friction(run.events.state_after[landing], coefficient, times)
+        z = dry_friction_reference(run.events.state_after[landing], coefficient, times)
         gap = np.abs(z[[0, 3, 5]] - run.state[sliding][:, [0, 3, 5]].T).max(axis=1)
         differences.append(gap)
     # the difference is proportional to the reciprocal of the coefficient
@@ -190,7 +190,7 @@ def right_pad(alpha, y, spin, speed):
     return k * (0.5 * G / k - rise) - c * rate
 
 
-def squat_by_friction(start, coefficient, times):
+def squat_dry_friction_reference(start, coefficient, times):
     """Integrate the same block with regularised dry friction at the middle of its base."""
     b, h = SQUAT_B, SQUAT_H
     inertia = (b * b + h * h) / 3.0
@@ -225,7 +225,7 @@ def test_corner_slides_along_relaxing_pad_until_flight():
     times = run.time[sliding] - begin
     gaps = []
     for coefficient in (20.0, 80.0, 320.0):
-        z = squat_by_friction(run.events.state_after[left], coefficient, times)
+        z = squat_dry_friction_reference(run.events.state_after[left], coefficient, times)
         gaps.append(np.abs(z[[0, 3, 5]] - run.state[sliding][:, [0, 3, 5]].T).max(axis=1))
     for coarse, fine in pairwise(gaps):
         assert (fine < 0.4 * coarse).all()
@@ -265,16 +265,16 @@ def test_fixed_steps_are_refined_while_corner_slides_on_fast_pad():
 def test_rounding_error_of_speed_counts_as_zero():
     """An end is at rest, up to rounding, where the body's velocity cancels its rotation."""
     rng = np.random.default_rng(4)
-    beside = 0
+    differing = 0
     for speed, lever in rng.normal(size=(200, 2)).tolist():
         rate = -speed / lever
         noise = speed_noise(speed, lever, rate)
         left = speed + lever * rate
-        beside += left != 0.0
+        differing += left != 0.0
         assert is_lifted(left, left, noise)
         assert noise < 1e-14 * abs(speed)
         clearly = 1e-13 * abs(speed)
         assert not is_lifted(clearly, clearly, noise)  # it rises
         assert not is_lifted(-clearly, -clearly, noise)  # it moves down
         assert is_lifted(-clearly, clearly, noise)
-    assert beside > 10
+    assert differing > 10

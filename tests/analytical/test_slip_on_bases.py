@@ -116,8 +116,8 @@ def test_run_reports_slip_and_its_events():
     assert found.attrs["verdict"].startswith("Slid 0.")
     kinds = found.event_kind.attrs["flag_meanings"].split()
     values = found.event_kind.attrs["flag_values"]
-    met = {kinds[list(values).index(one)] for one in found.event_kind.values}
-    assert {"slip", "stick"} <= met
+    kinds_met = {kinds[list(values).index(one)] for one in found.event_kind.values}
+    assert {"slip", "stick"} <= kinds_met
     assert found.slip[-1] == found.residual_slip
     assert abs(found.slip).max() <= found.peak_slip * (1.0 + 1e-12)
     assert "mu_k" in rf.System(BLOCK, PADS.replace(friction=0.25)).describe()
@@ -155,37 +155,37 @@ PLINTH = rf.Block(width="1 m", height="1 m", mass="1.5 t")
 PULSE = rf.GroundMotion.sine_pulse(amplitude="-4 m/s^2", frequency="1.5 Hz")
 
 
-@pytest.mark.parametrize("beside", ["0 m", "0.1 m"])
-def test_simultaneous_landing_obeys_restitution_and_friction_cone(beside):
+@pytest.mark.parametrize("eccentricity", ["0 m", "0.1 m"])
+def test_simultaneous_landing_obeys_restitution_and_friction_cone(eccentricity):
     """Each by its own speed, both impulses in the friction cone; or one, which lifts the other.
 
     Both are simultaneous, so that a block that falls flat stays flat.
     """
-    block, rng, alone = BLOCK.replace(eccentricity=beside), np.random.default_rng(7), 0
+    block, rng, singles = BLOCK.replace(eccentricity=eccentricity), np.random.default_rng(7), 0
     for friction in (0.1, 0.3, 0.6, np.inf):
-        given = {"friction": min(friction, 1e9), "kinetic_friction": min(friction, 0.6)}
-        model = rf.System(block, PADS.replace(restitution=0.3, **given)).setting.compile()
+        frictions = {"friction": min(friction, 1e9), "kinetic_friction": min(friction, 0.6)}
+        model = rf.System(block, PADS.replace(restitution=0.3, **frictions)).setting.compile()
         system, (full, rest, memory) = model.system, model.initial(Start())
         mode, part = system.with_slip_sense(full, 0, 1.0), system.on_base(0)
         for slips in (0.0, *rng.normal(size=30)):
             state = rest.copy()
             state[3:] = 0.2 * rng.normal() * (slips != 0.0), -1.0, slips
-            before, had = part.body.base_line_at(system.state_of(0, state)), state.copy()
+            before, initial = part.body.base_line_at(system.state_of(0, state)), state.copy()
             lost = memory[IMPACT_LOSS]
             system.strike(0, True, True, mode, state, memory)
             after = part.body.base_line_at(system.state_of(0, state))
-            kept = np.array([
+            excess = np.array([
                 after.left_speed - 0.3 * before.left_speed,
                 after.right_speed - 0.3 * before.right_speed,
             ])  # fmt: skip
-            _, press, along = state[3:] - had[3:]
+            _, press, along = state[3:] - initial[3:]
             assert abs(along) <= min(friction, 0.6) * press * (1.0 + 1e-12) + 1e-15
             assert memory[IMPACT_LOSS] > lost
-            assert kept.min() == pytest.approx(0.0, abs=1e-12)
-            alone += kept.max() > 1e-9
-            if slips == 0.0 and beside == "0 m":
+            assert excess.min() == pytest.approx(0.0, abs=1e-12)
+            singles += excess.max() > 1e-9
+            if slips == 0.0 and eccentricity == "0 m":
                 np.testing.assert_allclose(state[3:], [0.0, -0.3, 0.0], atol=1e-14)
-    assert 0 < alone < 60
+    assert 0 < singles < 60
 
 
 def stacked(upper, lower, pads=PADS):
@@ -275,15 +275,15 @@ def test_tiny_friction_approaches_frictionless_slip(friction):
     "friction", [1e5, 1e15, *(pytest.param(one, marks=pytest.mark.long) for one in (1e7, 1e9))]
 )
 def test_arbitrarily_large_friction_holds(friction):
-    held, slippery = (two_bodies(**given).rotation for given in ({}, {"friction": friction}))
+    held, slippery = (two_bodies(**options).rotation for options in ({}, {"friction": friction}))
     np.testing.assert_allclose(slippery, held, rtol=0.0, atol=1e-12)
 
 
 @pytest.mark.parametrize(("number", "ends"), [(189, "0.1 s"), (169, "0.13 s"), (174, "0.13 s")])
 def test_large_friction_does_not_chatter_from_rounding(number, ends):
     """Each body once slipped and stuck endlessly when its friction reached the limit."""
-    drawn_system, shake = drawn("friction on pads", np.random.default_rng(number))
-    block = drawn_system.parts["block"]
+    random_system, shake = drawn("friction on pads", np.random.default_rng(number))
+    block = random_system.parts["block"]
     width, height = block.si.width, block.si.height
     below = rf.Block(
         width=f"{1.4 * width} m", height=f"{max(height, 1.1 * width)} m", mass="3 t"

@@ -38,7 +38,7 @@ def run(*parts, peak=-3.0, duration="2.5 s", **options):
     )
 
 
-def apart(one, other, name="rotation"):
+def largest_difference(one, other, name="rotation"):
     """Return the largest difference of two histories over the largest value."""
     scale = np.abs(other[name].values).max()
     return np.abs(one[name].values - other[name].values).max() / scale
@@ -62,12 +62,12 @@ def test_coupled_stack_on_firm_soil_converges_to_block_on_pads(rule, rotation):
     for k0 in stiffness:
         with pytest.warns(ModelWarning, match="eps_max"):
             response = run(block(), pads(restitution=1), cap(), soil(f"{k0} Pa"), **options)
-        errors.append([apart(response, exact, name) for name in SMOOTH])
+        errors.append([largest_difference(response, exact, name) for name in SMOOTH])
         assert response.impact_count.item() == exact.impact_count.item()
     slopes = np.polyfit(np.log(stiffness[1:]), np.log(errors[1:]), 1)[0]
     np.testing.assert_allclose(slopes, -1.0, atol=0.05)
     assert max(errors[-1]) < 2e-5
-    assert apart(response, exact, "vertical_displacement") < 1e-3
+    assert largest_difference(response, exact, "vertical_displacement") < 1e-3
 
 
 def test_heavy_cap_on_firm_soil_converges_to_block_on_pads():
@@ -78,7 +78,9 @@ def test_heavy_cap_on_firm_soil_converges_to_block_on_pads():
     errors = []
     for m_c in mass:
         heavy = cap(mass=f"{m_c} kg")
-        errors.append(apart(run(block(), pads(), heavy, soil(f"{1e7 * m_c} Pa")), exact))
+        errors.append(
+            largest_difference(run(block(), pads(), heavy, soil(f"{1e7 * m_c} Pa")), exact)
+        )
     slope = np.polyfit(np.log(mass), np.log(errors), 1)[0]
     assert slope == pytest.approx(-1.0, abs=0.05)
     assert errors[-1] < 1e-4
@@ -90,11 +92,11 @@ def test_cascade_on_firm_soil_converges_to_block_on_pads():
     errors = []
     for k0 in stiffness:
         response = run(block(), pads(), cap(), soil(f"{k0} Pa"), coupling="cascade")
-        errors.append([apart(response, exact, name) for name in SMOOTH])
+        errors.append([largest_difference(response, exact, name) for name in SMOOTH])
     slopes = np.polyfit(np.log(stiffness), np.log(errors), 1)[0]
     np.testing.assert_allclose(slopes, -1.0, atol=0.05)
     assert max(errors[-1]) < 1e-3
-    assert apart(response, exact, "vertical_displacement") < 1e-3
+    assert largest_difference(response, exact, "vertical_displacement") < 1e-3
 
 
 # stiff pads ----------------------------------------------------------------------------------
@@ -114,9 +116,9 @@ def test_block_and_cap_on_stiff_pads_converge_to_one_body(rule, separation):
         response = run(block(), pads(ratio), under, ground, peak=-1.2, restraint=rule)
         assert (response.contact_state.values == 0).all()
         errors.append([
-            apart(response, exact, "rotation"),
-            apart(response, exact, "cap_rotation"),
-            apart(response, exact, "cap_vertical_displacement"),
+            largest_difference(response, exact, "rotation"),
+            largest_difference(response, exact, "cap_rotation"),
+            largest_difference(response, exact, "cap_vertical_displacement"),
             np.abs(response.rotation_on_cap.values).max() / exact.peak_rotation.item(),
         ])  # fmt: skip
     slopes = np.polyfit(np.log(beta), np.log(errors), 1)[0]
@@ -173,7 +175,7 @@ def test_response_is_smooth_down_to_zero_cap_mass(scene, width):
     for name, row in none.items():
         if row.dims == ("time",):
             assert np.isfinite(row.values).all(), name
-    one, ten = apart(light("1 kg"), none), apart(light("10 kg"), none)
+    one, ten = largest_difference(light("1 kg"), none), largest_difference(light("10 kg"), none)
     assert 0.0 < one < 1e-4
     assert ten / one == pytest.approx(10.0, rel=0.01)
 
@@ -192,9 +194,9 @@ def test_too_light_cap_in_coupled_equations_warns(mass):
     assert light.energy_residual.item() < 1e-8
     # the meaning of the share
     share = cap(width="3.2 m", height="0 m", mass="50 kg")
-    assert apart(light, run(block(), pads(), share, soil())) < 1e-3
+    assert largest_difference(light, run(block(), pads(), share, soil())) < 1e-3
     heavier = cap(width="3.2 m", height="0 m", mass="500 kg")
-    assert apart(light, run(block(), pads(), heavier, soil())) < 0.05
+    assert largest_difference(light, run(block(), pads(), heavier, soil())) < 0.05
 
 
 def test_cap_above_least_mass_does_not_warn():
@@ -224,7 +226,7 @@ def test_separation_by_pressure_does_not_pull_with_damping():
         run(block(), soil(damping_ratio=0.5, separation=separation), peak=-2.5)
         for separation in ("displacement", "pressure")
     )
-    assert apart(one, other) > 1e-3
+    assert largest_difference(one, other) > 1e-3
     assert (other.contact_length.values <= 2.4 + 1e-12).all()
     least = 50e3 * 9.80665 * 1e-9
     assert other.soil_reaction.values.min() >= -least

@@ -141,13 +141,13 @@ ANGLES = (1e-4, -0.004, 0.0137, 0.02, -0.04, 0.12, 0.24)
 
 
 def stack(name, **options):
-    given = STACKS[name]
-    width, height, mass = given["cap"]
+    parts = STACKS[name]
+    width, height, mass = parts["cap"]
     return rf.System(
         rf.Block(width=f"{2 * B} m", height=f"{2 * H} m", mass=f"{M} kg"),
-        rf.TwoSpringSupport(frequency_ratio=given["beta"], damping_ratio=0.1),
+        rf.TwoSpringSupport(frequency_ratio=parts["beta"], damping_ratio=0.1),
         rf.CushionCap(width=width, height=height, mass=mass),
-        rf.WinklerSoil(stiffness=given["soil"], damping_ratio=0.2),
+        rf.WinklerSoil(stiffness=parts["soil"], damping_ratio=0.2),
         **options,
     )
 

@@ -97,14 +97,14 @@ def test_held_body_matches_closed_forms(block, base, rotation):
         form, found = closed(setting, angle), setting.statics(angle)
         small = rotation == "small"
         sine, cosine = (angle, 1.0) if small else (math.sin(angle), math.cos(angle))
-        h, beside = body.centre_height, body.eccentricity
+        h, eccentricity = body.centre_height, body.eccentricity
         assert found.contact_state == form.contact
         rounding = EXACT * weight * body.half_width
         assert found.base_moment == pytest.approx(form.moment, rel=EXACT, abs=rounding)
-        back = form.moment - weight * (h * sine + beside * cosine)
+        back = form.moment - weight * (h * sine + eccentricity * cosine)
         assert found.restoring_moment == pytest.approx(back, rel=EXACT, abs=rounding)
         rise = 0.5 * h * angle**2 if small else h * (1.0 - math.cos(angle))
-        height = form.rise - rise - beside * sine
+        height = form.rise - rise - eccentricity * sine
         assert found.vertical_displacement == pytest.approx(height, rel=EXACT, abs=1e-14)
         assert found.reactions == pytest.approx(form.reactions, rel=EXACT, abs=1e-8)
 
@@ -203,12 +203,12 @@ MASSES = (1.0, 0.7, 1.6)
 TOPS = (0.0, 0.9, 0.4)
 
 
-def bodies(beside=0.0, along=0.0):
+def bodies(eccentricity=0.0, along=0.0):
     """Return a block on pads on a block on pads on a plate on a bed; eccentric by a share."""
     shapes = ((2.2, 0.55, 0.12), (0.9, 0.7, 0.05), (0.4, 1.1, 0.0))
     links = []
     for k, (height, half, off) in enumerate(shapes):
-        off *= beside
+        off *= eccentricity
         body = rigid_body(
             left=half + off, right=half - off, height=height, inertia=MASSES[k] * 0.5,
             restraint=CENTRE, small_rotation=False, gravity=G,
@@ -248,7 +248,7 @@ def potential(chain, places):
     return energy
 
 
-def least(chain, rotation=None):
+def minimum_energy(chain, rotation=None):
     """Return rotations and heights of least energy, with the highest body held or free."""
     sizes = np.array([1e-3, 1e-3] * 3)
 
@@ -270,11 +270,13 @@ def placed(poses):
     return np.array([[pose.state.rotation, pose.state.vertical] for pose in poses])
 
 
-@pytest.mark.parametrize(("beside", "along"), [(0.0, 0.0), (1.0, 0.0), (0.0, 0.15), (1.0, -0.1)])
-def test_three_bodies_rest_where_their_energy_is_least(beside, along):
-    chain = bodies(beside, along)
+@pytest.mark.parametrize(
+    ("eccentricity", "along"), [(0.0, 0.0), (1.0, 0.0), (0.0, 0.15), (1.0, -0.1)]
+)
+def test_three_bodies_rest_where_their_energy_is_least(eccentricity, along):
+    chain = bodies(eccentricity, along)
     poses = chain.rest()
-    found, energy = least(chain)
+    found, energy = minimum_energy(chain)
     assert placed(poses) == pytest.approx(found, rel=1e-4, abs=1e-6)
     assert potential(chain, placed(poses)) <= energy + 1e-12
     assert chain.moments(poses) == pytest.approx([0.0] * 3, abs=1e-11)
@@ -283,13 +285,13 @@ def test_three_bodies_rest_where_their_energy_is_least(beside, along):
     assert np.linalg.eigvalsh(stiffness).min() > 0.0
 
 
-@pytest.mark.parametrize(("beside", "along"), [(0.0, 0.0), (1.0, -0.1)])
-def test_three_bodies_are_held_where_their_energy_is_least(beside, along):
-    chain = bodies(beside, along)
+@pytest.mark.parametrize(("eccentricity", "along"), [(0.0, 0.0), (1.0, -0.1)])
+def test_three_bodies_are_held_where_their_energy_is_least(eccentricity, along):
+    chain = bodies(eccentricity, along)
     rotations = (0.004, 0.03, 0.08, -0.02, -0.1)
     contacts = set()
     for rotation, poses in zip(rotations, chain.curve(rotations), strict=True):
-        found, energy = least(chain, rotation)
+        found, energy = minimum_energy(chain, rotation)
         assert placed(poses)[:, 0].sum() == pytest.approx(rotation, rel=1e-13)
         assert placed(poses) == pytest.approx(found, rel=1e-4, abs=1e-6)
         assert potential(chain, placed(poses)) <= energy + 1e-12

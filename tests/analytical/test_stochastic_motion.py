@@ -58,9 +58,9 @@ RECORDED = {
 def test_two_corner_source_fits_recorded_long_periods_better(magnitude):
     ratios = {}
     for kind in ("one corner", "two corners", "unless given"):
-        given = {} if kind == "unless given" else {"source": kind}
+        options = {} if kind == "unless given" else {"source": kind}
         motions = {
-            seed: rf.GroundMotion.stochastic(magnitude, "20 km", seed, **given)
+            seed: rf.GroundMotion.stochastic(magnitude, "20 km", seed, **options)
             for seed in range(12)
         }
         spectra = rf.response_spectrum(motions, (PERIODS, "s")).pseudo_spectral_acceleration

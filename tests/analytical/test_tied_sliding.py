@@ -43,7 +43,7 @@ def run(base, *others, sign=1.0, block=BLOCK, accuracy="reference", **options):
     )
 
 
-def kinds_of(found):
+def event_kinds(found):
     names = found.event_kind.attrs["flag_meanings"].split()
     return [names[kind - 1] for kind in found.event_kind.values]
 
@@ -61,10 +61,10 @@ def test_infinite_friction_holds_base(base):
     assert far.attrs["verdict"].startswith("Did not slide")
     assert abs(far.rotation - held.rotation).max() < 1e-11 * held.peak_rotation
     # up to rest, after which a tie without slack is taut or slack by rounding
-    last = kinds_of(held).index("rest") if "rest" in kinds_of(held) else None
+    last = event_kinds(held).index("rest") if "rest" in event_kinds(held) else None
     first = [one.event_time.values[:last] for one in (far, held)]
     np.testing.assert_allclose(*first, rtol=0.0, atol=1e-8)
-    assert sorted(kinds_of(far)[:last]) == sorted(kinds_of(held)[:last])
+    assert sorted(event_kinds(far)[:last]) == sorted(event_kinds(held)[:last])
 
 
 @pytest.mark.long
@@ -77,7 +77,7 @@ def test_slack_tie_changes_nothing(base, stiffness):
     assert free.peak_slip > 1e-3
     for name in ("slip", "rotation"):
         assert abs(slack[name] - free[name]).max() <= 1e-12 * abs(free[name]).max()
-    assert kinds_of(slack) == kinds_of(free)
+    assert event_kinds(slack) == event_kinds(free)
     assert slack.peak_restrainer_force == 0.0
 
 
@@ -97,7 +97,7 @@ def test_mirror_images_are_the_same(base):
 def test_energy_balances_with_ties_and_friction(base):
     found = run(base.replace(friction=0.15, kinetic_friction=0.1), *ties())
     assert found.peak_slip > 1e-3
-    assert {"slip", "restrainer_taut", "restrainer_yield"} <= set(kinds_of(found))
+    assert {"slip", "restrainer_taut", "restrainer_yield"} <= set(event_kinds(found))
     assert found.energy_residual < 1e-8
     assert (np.diff(found.dissipated_energy) >= -1e-9 * found.dissipated_energy.max().item()).all()
     assert found.elastic_energy.max() > found.elastic_energy[0]
@@ -143,7 +143,7 @@ def test_slip_before_and_after_tie_fracture_in_closed_form():
         bar(stiffness, strength=f"{strength!r} N", brittle=True),
     )  # fmt: skip
     found = system.simulate(steady(-push, 0.5), duration="0.4 s", accuracy="reference")
-    ((breaks,),) = (found.event_time.values[np.array(kinds_of(found)) == "restrainer_fracture"],)
+    ((breaks,),) = (found.event_time.values[np.array(event_kinds(found)) == "restrainer_fracture"],)
     rate, pull = math.sqrt(stiffness / 1e3), push - friction * GRAVITY
     broken_at = strength / stiffness
     when = math.acos(1.0 - broken_at * rate**2 / pull) / rate
@@ -164,9 +164,9 @@ def test_tie_fractures_after_uplift_time_of_free_block():
     ground = rf.RigidGround(friction=0.55, kinetic_friction=0.5)
     system = rf.System(BLOCK, ground, tie)
     found = system.simulate(steady(-6.5, 1.0), duration="1 s", accuracy="reference")
-    assert "restrainer_fracture" in kinds_of(found)
+    assert "restrainer_fracture" in event_kinds(found)
     assert found.energy_residual < 1e-8
-    broken = found.event_time.values[kinds_of(found).index("restrainer_fracture")]
+    broken = found.event_time.values[event_kinds(found).index("restrainer_fracture")]
     free = rf.System(BLOCK, ground).simulate(steady(-6.5, 1.0), duration="1 s")
     assert broken > free.first_uplift_time
 
@@ -213,9 +213,9 @@ def test_sliding_block_with_wall_and_load():
     assert alone.peak_slip > 1e-3
 
 
-def stack_with_ties(friction, of_joint, **changed):
+def stack_with_ties(friction, joint_friction, **changed):
     """Return two blocks with ties to each other and to the ground."""
-    joint = rf.TwoSpringSupport(frequency_ratio=15, damping_ratio=0.2, friction=of_joint)
+    joint = rf.TwoSpringSupport(frequency_ratio=15, damping_ratio=0.2, friction=joint_friction)
     upper = rf.Block(width="0.8 m", height="1.5 m", mass="500 kg")
     stack = rf.Stack(upper, BLOCK.replace(height="1 m"), interfaces=[joint.replace(**changed)])
     tie = rf.Restrainer(
@@ -288,5 +288,5 @@ def test_block_coming_to_rest_while_sliding_gains_no_energy(seed):
     found = rf.System(block, ground, tie).simulate(
         motion, outputs=("energy",), output_step="1 ms", second_look=False
     )
-    assert kinds_of(found).count("rest") > 2
+    assert event_kinds(found).count("rest") > 2
     assert np.diff(found.impact_energy.to_numpy()).min() >= -1e-14 * found.kinetic_energy.max()

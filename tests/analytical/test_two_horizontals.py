@@ -64,7 +64,7 @@ def components() -> tuple[np.ndarray, np.ndarray]:
     return 0.5 * envelope * first, 0.4 * envelope * second
 
 
-def made() -> rf.HorizontalPair:
+def synthetic_pair() -> rf.HorizontalPair:
     return rf.HorizontalPair(
         *(rf.GroundMotion.from_arrays((one, "m/s^2"), f"{STEP} s") for one in components())
     )
@@ -75,7 +75,7 @@ def noise(seed: int, count: int = 300) -> rf.GroundMotion:
     return rf.GroundMotion.from_arrays((samples, "m/s^2"), "0.02 s", name=f"noise {seed}")
 
 
-def recorded() -> rf.HorizontalPair:
+def recorded_pair() -> rf.HorizontalPair:
     pair = rf.HorizontalPair.read(record_path("GEONET_20180212_211557_WPWS_20.V2A"))
     # pyrotd takes a record as band-limited, not as linear between its samples
     return rf.HorizontalPair(pair.first.resampled("0.0025 s"), pair.second.resampled("0.0025 s"))
@@ -83,7 +83,7 @@ def recorded() -> rf.HorizontalPair:
 
 @pytest.mark.parametrize("which", PYROTD)
 def test_rotated_spectra_match_stored_pyrotd_values(which):
-    pair = made() if which == "made" else recorded()
+    pair = synthetic_pair() if which == "made" else recorded_pair()
     found = rf.rotated_spectrum(pair, (PERIODS, "s"))
     for name, expected in PYROTD[which].items():
         np.testing.assert_allclose(found[name].values[0], expected, rtol=0.005, err_msg=name)
@@ -103,7 +103,7 @@ def test_rotated_spectra_match_installed_pyrotd():
     theirs = pyrotd.calc_rotated_spec_accels(
         STEP, *padded, 1.0 / PERIODS, 0.05, percentiles=[50, 100], max_freq_ratio=60
     )
-    found = rf.rotated_spectrum(made(), (PERIODS, "s"))
+    found = rf.rotated_spectrum(synthetic_pair(), (PERIODS, "s"))
     for name, percentile in zip(NAMES, (50, 100), strict=False):
         expected = theirs.spec_accel[theirs.percentile == percentile]
         np.testing.assert_allclose(found[name].values[0], expected, rtol=0.005)
@@ -261,11 +261,11 @@ def test_compiled_and_uncompiled_spectra_agree(monkeypatch):
     pulse = rf.GroundMotion.sine_pulse("1 m/s^2", "1 Hz")
     periods = (np.concatenate([[0.0], np.geomspace(0.01, 20.0, 7)]), "s")
     for pair in (record, (pulse, pulse.scaled(0.3))):
-        asked = rf.HorizontalPair(*pair), periods, (0.0, 0.05)
-        compiled = rf.rotated_spectrum(*asked, directions=20)
+        arguments = rf.HorizontalPair(*pair), periods, (0.0, 0.05)
+        compiled = rf.rotated_spectrum(*arguments, directions=20)
         with monkeypatch.context() as patch:
             patch.setattr(spectra, "COMPILED", False)
-            plain = rf.rotated_spectrum(*asked, directions=20)
+            plain = rf.rotated_spectrum(*arguments, directions=20)
         assert plain.data_vars.keys() == compiled.data_vars.keys()
         for name, one in compiled.data_vars.items():
             np.testing.assert_allclose(
@@ -285,7 +285,7 @@ def test_compiled_and_uncompiled_spectra_agree(monkeypatch):
         (lambda: rf.rotated_spectrum(noise(1)), "pair needs two horizontal components"),
         (lambda: rf.rotated_spectrum({}), "found no motions"),
         (lambda: rf.rotated_spectrum({"a": noise(1)}), "those of a suite are suite.pairs"),
-        (lambda: rf.rotated_spectrum(made(), directions=181), "directions must be even"),
+        (lambda: rf.rotated_spectrum(synthetic_pair(), directions=181), "directions must be even"),
         (lambda: rf.measures.principal_axes("pair"), "pair needs two horizontal components"),
         (lambda: rf.average_spectral_acceleration(noise(1), None), "periods must be given"),
         (lambda: rf.average_spectral_acceleration(noise(1), ["0 s"]), "above zero"),
@@ -298,16 +298,18 @@ def test_invalid_pairs_are_refused(make, words):
 
 
 def test_pair_requires_matching_azimuths_and_start_times():
-    def told(**metadata) -> rf.GroundMotion:
+    def metadata_motion(**metadata) -> rf.GroundMotion:
         motion = noise(1)
         return rf.GroundMotion(motion.si, metadata=metadata)
 
-    rf.HorizontalPair(told(azimuth=10), told(azimuth=100))
-    rf.HorizontalPair(told(azimuth=350.5), told(azimuth=260))
+    rf.HorizontalPair(metadata_motion(azimuth=10), metadata_motion(azimuth=100))
+    rf.HorizontalPair(metadata_motion(azimuth=350.5), metadata_motion(azimuth=260))
     with pytest.raises(ComponentError, match="point to 10° and 90°"):
-        rf.HorizontalPair(told(azimuth=10), told(azimuth=90))
+        rf.HorizontalPair(metadata_motion(azimuth=10), metadata_motion(azimuth=90))
     with pytest.raises(ComponentError, match="first starts at 10:00, second at 10:01"):
-        rf.HorizontalPair(told(record_time="10:00"), told(record_time="10:01"))
+        rf.HorizontalPair(
+            metadata_motion(record_time="10:00"), metadata_motion(record_time="10:01")
+        )
 
 
 def test_vertical_motion_of_only_one_component_warns():

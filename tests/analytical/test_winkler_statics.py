@@ -26,7 +26,7 @@ def held(system, angles):
     return system.moment_rotation((list(angles), "rad"))
 
 
-def slowly(bed, sine, cosine):
+def numerical_bed(bed, sine, cosine):
     """Integrate a bed of 20 000 strips that carries the weight, numerically."""
     s = (np.arange(20000) + 0.5) / 10000.0 * bed.half_width - bed.half_width
 
@@ -106,7 +106,7 @@ def test_against_many_strips(bed, rotation):
     for angle in (0.5 * bed.delta / bed.half_width, 0.02, 0.2, 0.6):
         sine, cosine = (angle, 1.0) if rotation == "small" else (math.sin(angle), math.cos(angle))
         rise = 0.5 * angle**2 if rotation == "small" else 1.0 - math.cos(angle)
-        middle, moment, share = slowly(bed, sine, cosine)
+        middle, moment, share = numerical_bed(bed, sine, cosine)
         state = held(system, [angle]).isel(angle=0)
         found = state.held_vertical_displacement.item() + bed.half_height * rise
         assert found == pytest.approx(middle, abs=1e-8 * bed.half_width)

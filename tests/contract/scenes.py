@@ -23,8 +23,8 @@ def cap(**changed):
 
 
 def soil(separation="displacement", **changed):
-    given = {"stiffness": "30 MPa", "damping_ratio": 0.1, "separation": separation}
-    return rf.WinklerSoil(**{**given, **changed})
+    arguments = {"stiffness": "30 MPa", "damping_ratio": 0.1, "separation": separation}
+    return rf.WinklerSoil(**{**arguments, **changed})
 
 
 def two_spring(rule, rotation):
