@@ -24,7 +24,7 @@ def base():
     return rf.sweep(SYSTEM, motions, accuracy="fast", progress=False)
 
 
-def made(base, seed=0, *, falls=True, rests=False):
+def synthetic_runs(base, seed=0, *, falls=True, rests=False):
     """Return responses about a line, with overturning drawn from a logistic curve."""
     rng = np.random.default_rng(seed)
     logs = rng.normal(0.0, 0.6, COUNT)
@@ -56,7 +56,7 @@ def logistic_by_weights(logs, verdict):
 
 
 def test_cloud_without_overturning_equals_lognormal_least_squares(base):
-    runs = made(base, falls=False)
+    runs = synthetic_runs(base, falls=False)
     found = rf.cloud_analysis(runs, "strength", limits=[0.1, 0.4])
     logs, response = (
         np.log(runs.strength.values),
@@ -81,7 +81,7 @@ def test_cloud_without_overturning_equals_lognormal_least_squares(base):
 
 
 def test_overturning_is_fitted_by_logistic_regression(base):
-    runs = made(base, seed=3)
+    runs = synthetic_runs(base, seed=3)
     found = rf.cloud_analysis(runs, "strength", limits=[0.3])
     fell = runs.status.values.ravel() == RunStatus.OVERTURNED
     logs = np.log(runs.strength.values)
@@ -113,7 +113,7 @@ def test_overturning_is_fitted_by_logistic_regression(base):
 
 
 def test_resting_runs_are_modelled_separately(base):
-    runs = made(base, seed=5, rests=True)
+    runs = synthetic_runs(base, seed=5, rests=True)
     found = rf.cloud_analysis(runs, "strength", limits=[0.1])
     response = runs.peak_relative_rotation.values.ravel()
     fell = runs.status.values.ravel() == RunStatus.OVERTURNED
@@ -138,11 +138,11 @@ def test_regression_coefficients_are_drawn_from_t_and_chi2():
     line = Regression.fit(logs, 0.3 + 1.2 * logs + 0.4 * rng.standard_normal(15))
     intercept, slope, spread = line.draw_coefficients(np.random.default_rng(2), 40_000)
     error = np.sqrt(np.diag(line.covariance))
-    for drawn, middle, size in (
+    for sample, middle, size in (
         (intercept, line.intercept, error[0]),
         (slope, line.slope, error[1]),
     ):
-        assert stats.kstest((drawn - middle) / size, stats.t(13).cdf).pvalue > 1e-3
+        assert stats.kstest((sample - middle) / size, stats.t(13).cdf).pvalue > 1e-3
     assert stats.kstest(13 * (line.dispersion / spread) ** 2, stats.chi2(13).cdf).pvalue > 1e-3
 
 
@@ -154,8 +154,8 @@ def test_cloud_bounds_have_nominal_coverage():
     for _ in range(600):
         logs = rng.normal(0.0, 0.6, 30)
         response = np.exp(-1.0 + 1.3 * logs + 0.4 * rng.standard_normal(30))
-        drawn = Cloud.fit(logs, response).draw_curves(at, level, rng, 1000)[:, 0]
-        low, high = np.quantile(drawn, [0.025, 0.975])
+        curves = Cloud.fit(logs, response).draw_curves(at, level, rng, 1000)[:, 0]
+        low, high = np.quantile(curves, [0.025, 0.975])
         held += low <= truth <= high
     assert 0.93 <= held / 600 <= 0.97
 
@@ -216,7 +216,7 @@ def test_degenerate_logistic_fits_have_a_status():
 
 
 def test_motions_of_one_intensity_have_no_fragility(base):
-    runs = made(base, seed=3)
+    runs = synthetic_runs(base, seed=3)
     rounding = 1.0 + 1e-15 * (np.arange(runs.sizes["motion"]) % 3)
     found = rf.cloud_analysis(runs.assign_coords(strength=("motion", rounding)), "strength")
     assert np.isnan(found.median_intensity).all()
@@ -225,7 +225,7 @@ def test_motions_of_one_intensity_have_no_fragility(base):
 
 
 def test_motions_that_are_run_twice_have_no_bounds(base):
-    runs = made(base, seed=3)
+    runs = synthetic_runs(base, seed=3)
     twice = xr.concat([runs, runs], "motion", data_vars="minimal", combine_attrs="override")
     found = rf.cloud_analysis(twice, "strength", limits=[0.3])
     assert np.isnan(found.median_intensity_upper_bound).all()
@@ -235,7 +235,7 @@ def test_motions_that_are_run_twice_have_no_bounds(base):
 
 
 def test_cloud_yields_annual_rates_and_writes_netcdf(base, tmp_path):
-    runs = made(base, seed=3)
+    runs = synthetic_runs(base, seed=3)
     found = rf.cloud_analysis(runs, "strength", limits=[0.3])
     hazard = {"intensity": (np.geomspace(0.01, 50, 9), "m"), "rate": np.geomspace(1, 1e-6, 9)}
     rates = rf.annual_rate(found, hazard)
@@ -261,11 +261,11 @@ def test_cloud_yields_annual_rates_and_writes_netcdf(base, tmp_path):
 )
 def test_invalid_cloud_arguments_are_refused(base, options, error, words):
     with pytest.raises(error, match=words):
-        rf.cloud_analysis(made(base), **{"intensity": "strength", **options})
+        rf.cloud_analysis(synthetic_runs(base), **{"intensity": "strength", **options})
     with pytest.raises(StudyError, match="3 runs have a verdict"):
-        rf.cloud_analysis(made(base).isel(motion=slice(3)), "strength")
+        rf.cloud_analysis(synthetic_runs(base).isel(motion=slice(3)), "strength")
     with pytest.raises(StudyError, match="1 run has a verdict"):
-        rf.cloud_analysis(made(base).isel(motion=slice(1)), "strength")
+        rf.cloud_analysis(synthetic_runs(base).isel(motion=slice(1)), "strength")
 
 
 def test_sliding_runs_are_not_reported_as_at_rest():

@@ -44,8 +44,8 @@ def test_cases_have_requested_distributions_and_correlations():
     )  # fmt: skip
     values = [found[name].values for name in SPREAD]
     laws = [stats.norm(0.5, 0.02), stats.lognorm(0.1, scale=2.0), stats.uniform(0.5, 1.0)]
-    for one, law in zip(values, laws, strict=True):
-        assert stats.kstest(one, law.cdf).pvalue > 0.5  # less deviation than at random
+    for sample, law in zip(values, laws, strict=True):
+        assert stats.kstest(sample, law.cdf).pvalue > 0.5  # less deviation than at random
     scores = np.stack([stats.norm.ppf(law.cdf(v)) for law, v in zip(laws, values, strict=True)])
     np.testing.assert_allclose(np.corrcoef(scores), MATRIX, atol=0.08)
     # normal and lognormal: the correlation with the logarithm of the lognormal
@@ -77,7 +77,7 @@ def test_correlated_probability_matches_monte_carlo():
 
 
 @pytest.mark.parametrize(
-    ("given", "words"),
+    ("correlation", "words"),
     [
         ({("width", "depth"): 0.5}, "pairs of two of width, height, scale"),
         ({("width", "height"): 1.0}, "between -1 and 1"),
@@ -85,6 +85,8 @@ def test_correlated_probability_matches_monte_carlo():
         ([[1, 0.9, -0.9], [0.9, 1, 0.9], [-0.9, 0.9, 1]], "not positive definite"),
     ],
 )
-def test_invalid_correlations_are_refused(given, words):
+def test_invalid_correlations_are_refused(correlation, words):
     with pytest.raises(ComponentError, match=words):
-        rf.probability_of_overturning(SYSTEM, PULSE, spread=SPREAD, correlation=given, cases=10)
+        rf.probability_of_overturning(
+            SYSTEM, PULSE, spread=SPREAD, correlation=correlation, cases=10
+        )

@@ -54,13 +54,13 @@ def test_members_without_a_result_are_counted():
 
 
 def test_sample_verdict_reports_motions_and_omitted_cases():
-    drawn = rf.probability_of_overturning(
+    sample = rf.probability_of_overturning(
         SYSTEM, motions(), cases=40, spread={"scale": ("uniform", 2.0, 8.0)}, **HOW
     )
-    assert "by 40 cases under these 5 motions" in drawn.verdict
-    assert "left out" not in drawn.verdict
-    assert rf.ensemble_statistics(drawn).member_count.item() == 40
-    bare = drawn.drop_dims("parameter").copy(deep=True)
+    assert "by 40 cases under these 5 motions" in sample.verdict
+    assert "left out" not in sample.verdict
+    assert rf.ensemble_statistics(sample).member_count.item() == 40
+    bare = sample.drop_dims("parameter").copy(deep=True)
     fail(bare, case=slice(0, 7))
     found = _with_probability(bare, ["scale"], several=True, level=0.95)
     assert found.verdict_count.item() == 33
@@ -82,33 +82,35 @@ def test_map_masks_runs_without_a_verdict():
         SYSTEM, rf.GroundMotion.sine_pulse, amplitude=([1, 6], "m/s^2"),
         frequency=([1, 2], "Hz"), **HOW,
     )  # fmt: skip
-    drawn = {}
+    images = {}
     for name in ("known", "failed"):
         axes = rf.plot.overturning_map(found)
         (legend,) = axes.figure.legends
-        drawn[name] = (
+        images[name] = (
             np.ma.getmaskarray(axes.collections[0].get_array()).ravel().tolist(),
             [text.get_text() for text in legend.get_texts()],
         )
         fail(found, amplitude=0, frequency=1)
-    assert drawn["known"][0] == [False] * 4
-    assert drawn["failed"][0] == [False, True, False, False]
-    assert [words[-1] == "no verdict" for _, words in drawn.values()] == [False, True]
+    assert images["known"][0] == [False] * 4
+    assert images["failed"][0] == [False, True, False, False]
+    assert [words[-1] == "no verdict" for _, words in images.values()] == [False, True]
     pyplot.close("all")
 
 
 def test_a_spectrum_counts_runs_without_a_verdict(monkeypatch):
     from rockframe.studies import spectra
 
-    def asked():
+    def counted():
         return rf.overturning_spectrum(
             SYSTEM, motions(1), periods=([2, 4], "s"), scale=[1.0, 2.0, 4.0], **HOW
         ).left_out_count.values.tolist()
 
-    assert asked() == [[[0], [0]]]
-    told = spectra.overturns
-    monkeypatch.setattr(spectra, "overturns", lambda runs: told(runs).where(runs.scale != 2.0))
-    assert asked() == [[[1], [1]]]
+    assert counted() == [[[0], [0]]]
+    overturned_counts = spectra.overturns
+    monkeypatch.setattr(
+        spectra, "overturns", lambda runs: overturned_counts(runs).where(runs.scale != 2.0)
+    )
+    assert counted() == [[[1], [1]]]
 
 
 @pytest.mark.parametrize("count", [44, 90])

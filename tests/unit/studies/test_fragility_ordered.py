@@ -139,9 +139,9 @@ def test_leave_one_out_merges_limit_states_exceeded_by_the_same_runs():
     verdicts = np.stack([count > 0, count > 1]).astype(float)
     motions = np.arange(len(logs))
     first, second = ordered_fits(logs, verdicts, motions, NAMES[:2], Bands.JACKKNIFE)
-    kept = count != 1
+    included = count != 1
     one = Trials.from_verdicts(
-        logs[kept, None], verdicts[0, kept], np.ones(kept.sum()), motions[kept]
+        logs[included, None], verdicts[0, included], np.ones(included.sum()), motions[included]
     )
     expected = fit(one, Bands.PROFILE).coefficients
     for state in (first, second):

@@ -114,20 +114,20 @@ def test_axis_used_as_intensity_does_not_separate_structures(runs):
 
 
 def test_one_structure_per_run_is_refused():
-    drawn = rf.probability_of_overturning(
+    sample = rf.probability_of_overturning(
         SYSTEM, motions(), cases=30, **HOW,
         spread={"width": ("uniform", "0.4 m", "0.6 m"), "scale": ("uniform", 1.0, 8.0)},
     )  # fmt: skip
     with pytest.raises(ComponentError, match=r"pooled=\('width',\) takes all"):
-        rf.fragility(drawn)
-    assert rf.fragility(drawn, limits=(), pooled="width").trial_count.item() == 30
+        rf.fragility(sample)
+    assert rf.fragility(sample, limits=(), pooled="width").trial_count.item() == 30
 
 
 def test_concatenated_runs_and_sweeps_are_refused(runs):
     one, other = (rf.sweep(SYSTEM, motions(first), scale=SCALES[:3], **HOW) for first in (0, 10))
     run = SYSTEM.simulate(motions()["seed 0"])
     joined = rf.concat([run, SYSTEM.simulate(motions()["seed 1"])], "motion")
-    for given, kind, said in (
+    for dataset, kind, words in (
         (run, SchemaError, "found a single run, which is no sweep"),
         (joined, SchemaError, "found joined runs, which is no sweep"),
         (
@@ -142,8 +142,8 @@ def test_concatenated_runs_and_sweeps_are_refused(runs):
         ),
         (xr.concat([one, one], "motion"), StudyError, "'seed 0' stands twice along 'motion'"),
     ):
-        with pytest.raises(kind, match=said):
-            rf.fragility(given)
+        with pytest.raises(kind, match=words):
+            rf.fragility(dataset)
     for twice in (("PGA", "PGA"), ("PGA", "peak_ground_acceleration")):
         with pytest.raises(ComponentError, match="are one, peak_ground_acceleration"):
             rf.fragility(one, twice)
@@ -214,9 +214,9 @@ def test_figures_distinguish_structures(runs):
     names = [text.get_text() for text in panels.figure.legends[0].get_texts()]
     assert names == ["width 0.4 m", "width 0.5 m", "width 0.8 m"]
     axes = rf.plot.fragility(found.isel(width=1))
-    told = axes.figure.get_suptitle().replace("\n", " ")
-    assert f"{found.median_intensity[1, 1].item():.4g}" in told
-    assert "structures" not in told
+    title = axes.figure.get_suptitle().replace("\n", " ")
+    assert f"{found.median_intensity[1, 1].item():.4g}" in title
+    assert "structures" not in title
     with pytest.raises(SchemaError, match="found 3 structures, by width; a figure shows 1"):
         rf.plot.fragility(rf.fragility(runs, ("PGA", "PGV"), limits=()))
     pyplot.close("all")

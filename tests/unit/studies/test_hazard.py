@@ -135,8 +135,8 @@ def test_a_fragility_in_other_units_has_the_same_rate(curve):
 
 def test_exports_do_not_depend_on_units(curve, tmp_path):
     other = in_g(curve)
-    told = rf.export.to_pelicun(other, "x")["LS1-Theta_0"].item()
-    assert told == pytest.approx(curve.median_intensity.item() / G, rel=1e-12)
+    exported = rf.export.to_pelicun(other, "x")["LS1-Theta_0"].item()
+    assert exported == pytest.approx(curve.median_intensity.item() / G, rel=1e-12)
     files = [
         rf.export.to_openquake({"x": one}, tmp_path / f"{k}.xml").read_text()
         for k, one in enumerate((curve, other))
@@ -197,10 +197,12 @@ def test_unit_g_means_gravity_for_accelerations(curve):
     assert counted.median_intensity.item() == curve.median_intensity.item()
     one = rf.annual_rate(curve, TABLE).annual_rate.item()
     array = xr.DataArray(RATES, dims="pga", coords={"pga": ("pga", VALUES, {"units": "g"})})
-    for given in (array, *({**TABLE, "intensity": some} for some in (
+    for hazard_curve in (array, *({**TABLE, "intensity": some} for some in (
         (VALUES, "g"), [f"{value} g" for value in VALUES]
     ))):  # fmt: skip
-        assert rf.annual_rate(curve, given).annual_rate.item() == pytest.approx(one, rel=1e-12)
+        assert rf.annual_rate(curve, hazard_curve).annual_rate.item() == pytest.approx(
+            one, rel=1e-12
+        )
     ends = [
         rf.annual_rate(curve, lambda a: a**-2.5, between=some).annual_rate.item()
         for some in (["0.01 g", "90 g"], ["0.01 g_0", "90 g_0"])
@@ -220,11 +222,11 @@ def test_custom_measure_takes_a_hazard_in_its_unit(unit, size):
     found = rf.fragility(runs, own.assign_attrs(units=unit))
     expected = rf.annual_rate(rf.fragility(runs, "PGA"), TABLE).annual_rate
     values = VALUES * G / size
-    for given in (
+    for hazard_curve in (
         {"intensity": (values, unit), "rate": RATES},
         xr.DataArray(RATES, dims="a", coords={"a": ("a", values, {"units": unit})}),
     ):
-        rate = rf.annual_rate(found, given).annual_rate
+        rate = rf.annual_rate(found, hazard_curve).annual_rate
         np.testing.assert_allclose(rate, expected, rtol=1e-9)
     other = xr.DataArray(values, attrs={"units": "mm"})
     with pytest.raises(UnitsError, match="has the unit 'mm'"):
@@ -264,7 +266,7 @@ def test_rate_beyond_the_hazard_table_warns(curve):
 
 
 @pytest.mark.parametrize(
-    ("given", "error", "words"),
+    ("hazard_curve", "error", "words"),
     [
         ({"intensity": (VALUES, "m/s"), "rate": RATES}, UnitsError, "is in m s"),
         ({"intensity": (VALUES, "g_0"), "rate": RATES[::-1]}, ComponentError, "above zero fall"),
@@ -284,9 +286,9 @@ def test_rate_beyond_the_hazard_table_warns(curve):
         (3.0, ComponentError, "must be a table"),
     ],
 )  # fmt: skip
-def test_invalid_hazard_is_refused(curve, given, error, words):
+def test_invalid_hazard_is_refused(curve, hazard_curve, error, words):
     with pytest.raises(error, match=words):
-        rf.annual_rate(curve, given)
+        rf.annual_rate(curve, hazard_curve)
 
 
 @pytest.mark.parametrize("between", [["2 g_0", "1 g_0"], ["0 g_0", "1 g_0"], ["1 g_0"]])

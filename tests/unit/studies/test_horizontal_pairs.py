@@ -25,15 +25,15 @@ def test_pair_is_run_as_its_two_components():
 def test_components_of_a_pair_are_labelled():
     runs = rf.sweep(SYSTEM, {"station": PAIR, "pulse": rf.GroundMotion.sine_pulse()}, **HOW)
     assert runs.motion.values.tolist() == ["station first", "station second", "pulse"]
-    told = rf.HorizontalPair(
+    pair = rf.HorizontalPair(
         *(
             rf.GroundMotion(one.si, name=one.name, metadata={"component": name})
             for one, name in ((NORTH, "N"), (EAST, "E"))
         )
     )
-    runs = rf.sweep(SYSTEM, {"station": told}, **HOW)
+    runs = rf.sweep(SYSTEM, {"station": pair}, **HOW)
     assert runs.motion.values.tolist() == ["station N", "station E"]
-    found = rf.incremental_dynamic_analysis(SYSTEM, [told], **HOW, resolution=1.0)
+    found = rf.incremental_dynamic_analysis(SYSTEM, [pair], **HOW, resolution=1.0)
     assert found.sizes["motion"] == 2
 
 

@@ -134,7 +134,7 @@ def test_every_study_argument_is_covered_by_these_tests():
         assert set(changes) | set(KEPT) == arguments_of(name), name
 
 
-def two(base, name, change):
+def before_and_after(base, name, change):
     """Return the arguments of an analysis before and after a change."""
     before, after = change if isinstance(change, tuple) and len(change) == 2 and all(
         isinstance(one, dict) for one in change
@@ -147,7 +147,7 @@ def two(base, name, change):
 
 @pytest.mark.parametrize("name", SWEEP_CHANGES)
 def test_changed_sweep_argument_is_refused_by_its_store(name, tmp_path):
-    before, after = two(SWEPT, name, SWEEP_CHANGES[name])
+    before, after = before_and_after(SWEPT, name, SWEEP_CHANGES[name])
     rf.sweep(**before, store=tmp_path / "study")
     with pytest.raises(StudyError, match=r"found another study, which differs in \w+.* known='"):
         rf.sweep(**after, store=tmp_path / "study")
@@ -167,11 +167,11 @@ def begun(tmp_path_factory):
     """Return a function that creates the store of an analysis, each only once."""
     made = {}
 
-    def store(name, asked, into):
-        key = name, repr(sorted(asked.items(), key=lambda one: one[0]))
+    def store(name, arguments, into):
+        key = name, repr(sorted(arguments.items(), key=lambda one: one[0]))
         if key not in made:
             made[key] = tmp_path_factory.mktemp("store") / "study"
-            getattr(rf, name)(**asked, store=made[key])
+            getattr(rf, name)(**arguments, store=made[key])
         shutil.copytree(made[key], into)
 
     return store
@@ -188,28 +188,28 @@ def begun(tmp_path_factory):
 )
 def test_store_never_returns_results_of_other_arguments(analysis, name, begun, tmp_path):
     base, changes = ANALYSES[analysis]
-    before, after = two({"accuracy": "fast", **base}, name, changes[name])
+    before, after = before_and_after({"accuracy": "fast", **base}, name, changes[name])
     begun(analysis, before, tmp_path / "study")
     try:
-        kept = getattr(rf, analysis)(**after, store=tmp_path / "study")
+        stored = getattr(rf, analysis)(**after, store=tmp_path / "study")
     except StudyError as problem:
         assert "found another study, which differs in" in str(problem)  # noqa: PT017
     else:
-        alike(kept, getattr(rf, analysis)(**after))
+        alike(stored, getattr(rf, analysis)(**after))
 
 
 # descriptions ----------------------------------------------------------------------------------
 
 
 @dataclass(frozen=True)
-class Asked:
+class Arguments:
     size: float
     words: tuple[str, ...]
     further: object = None
 
 
 def test_description_covers_all_fields_and_refuses_unknown_objects():
-    one = Asked(1.0, ("a", "b"))
+    one = Arguments(1.0, ("a", "b"))
     others = [
         replace(one, size=np.nextafter(1.0, 2.0)), replace(one, words=("b", "a")),
         *(replace(one, further=each) for each in (
@@ -220,8 +220,8 @@ def test_description_covers_all_fields_and_refuses_unknown_objects():
     ]  # fmt: skip
     digests = [digest_of(description_of(each)) for each in (one, *others)]
     assert len(set(digests)) == len(digests)
-    assert digest_of(description_of(Asked(1.0, ("a", "b")))) == digests[0]
-    for unknown in (object(), {1, 2}, Asked(1.0, (), object()), {"a": object()}):
+    assert digest_of(description_of(Arguments(1.0, ("a", "b")))) == digests[0]
+    for unknown in (object(), {1, 2}, Arguments(1.0, (), object()), {"a": object()}):
         with pytest.raises(StudyError, match="nothing tells whether it is the same"):
             description_of(unknown)
 
@@ -248,8 +248,8 @@ def test_description_of_a_study_covers_nested_fields():
     # further fields of a job do not change numbers: two follow from the grid, names of restrainers
     # from the scenes; with lanes or without, cases are equal bit for bit
     derived = {"axes", "motion_of_case", "compile_timeout", "restrainers"}
-    told_of = {one.name for one in fields(Study)} | derived
-    assert {one.name for one in fields(SweepJob)} <= told_of
+    described = {one.name for one in fields(Study)} | derived
+    assert {one.name for one in fields(SweepJob)} <= described
 
 
 def test_digest_depends_on_motion_samples():
@@ -277,13 +277,13 @@ def test_digest_depends_on_closure_of_a_function():
     assert digest(scene_with(400)) != digest(scene_with(401))
 
 
-GIVEN = {"frequency_ratio": 15, "damping_ratio": 0.05, "strength": 0.6, "hardening": 0.1}
+ARGUMENTS = {"frequency_ratio": 15, "damping_ratio": 0.05, "strength": 0.6, "hardening": 0.1}
 
 
 def test_digest_depends_on_code_of_a_user_defined_base(tmp_path):
     def digest(module):
         _source_of_class.cache_clear()
-        pads = module.YieldingPads(**GIVEN)
+        pads = module.YieldingPads(**ARGUMENTS)
         return digest_of(description_of(pads))
 
     with example() as module:

@@ -111,8 +111,8 @@ def assert_same(together, alone):
     assert together.scalars.keys() == alone.scalars.keys()
     for name, column in alone.scalars.items():
         assert together.scalars[name].tobytes() == column.tobytes(), name
-    told = [[each.texts[k] for k in each.message] for each in (together, alone)]
-    assert told[0] == told[1]
+    messages = [[each.texts[k] for k in each.message] for each in (together, alone)]
+    assert messages[0] == messages[1]
 
 
 @pytest.mark.parametrize(
@@ -178,9 +178,9 @@ def test_invalid_cases_have_the_same_messages_in_joint_assembly(monkeypatch):
     heights[3] = 1e-200  # a vanishing inertia
     together, alone, _ = both(monkeypatch, rf.System(BLOCK, PADS), cases, record(), accuracy="fast")
     assert_same(together, alone)
-    said = {together.texts[k] for k in together.message}
-    assert any("cannot rock" in text for text in said)
-    assert any("exceeds eps_max" in text for text in said)
+    messages = {together.texts[k] for k in together.message}
+    assert any("cannot rock" in text for text in messages)
+    assert any("exceeds eps_max" in text for text in messages)
 
 
 def test_user_functions_are_called_with_scalars(monkeypatch):

@@ -63,7 +63,7 @@ STUDIES = [on_a_grid, with_histories, of_a_table, screened]
 
 
 @pytest.fixture(params=[True, False], ids=["with dask", "without"])
-def dask_is_there(request, monkeypatch):
+def has_dask(request, monkeypatch):
     if request.param:
         pytest.importorskip("dask", reason="dask is not installed")
     else:
@@ -71,7 +71,7 @@ def dask_is_there(request, monkeypatch):
     return request.param
 
 
-def agrees(lazy, whole):
+def assert_equal_lazily(lazy, whole):
     """Compare both, except that missing values make floats of other numbers."""
     assert set(lazy.variables) == set(whole.variables)
     for name, expected in whole.variables.items():
@@ -88,16 +88,16 @@ def agrees(lazy, whole):
 
 @pytest.mark.filterwarnings("ignore::rockframe.errors.SolverWarning")
 @pytest.mark.parametrize("run", STUDIES)
-def test_lazily_opened_study_equals_the_stored_one(run, tmp_path, dask_is_there, monkeypatch):
+def test_lazily_opened_study_equals_the_stored_one(run, tmp_path, has_dask, monkeypatch):
     monkeypatch.setattr(lazy_dataset, "_BLOCK_SIZE", 1)
     counted, counts = [], words._counts
     monkeypatch.setattr(words, "_counts", lambda *a: counted.append(a[0].sizes) or counts(*a))
     whole = run(accuracy="fast", store=tmp_path / "study")
     lazy = rf.open_study(tmp_path / "study", lazy=True)
-    assert (lazy.chunks != {}) == dask_is_there
-    agrees(lazy, whole)
-    said = {name: one for name, one in whole.attrs.items() if name not in ("verdict", "driver")}
-    assert lazy.attrs == said
+    assert (lazy.chunks != {}) == has_dask
+    assert_equal_lazily(lazy, whole)
+    attrs = {name: one for name, one in whole.attrs.items() if name not in ("verdict", "driver")}
+    assert lazy.attrs == attrs
     counted.clear()
     assert lazy.rockframe.verdict == whole.rockframe.verdict == whole.verdict
     assert len(counted) > 1 or run is screened  # read in parts
@@ -110,16 +110,16 @@ def test_lazily_opened_study_equals_the_stored_one(run, tmp_path, dask_is_there,
             for dim, size in whole.sizes.items()
             if rng.random() < 0.7
         }  # fmt: skip
-        agrees(lazy.isel(key), whole.isel(key))
+        assert_equal_lazily(lazy.isel(key), whole.isel(key))
     last = dict.fromkeys(lazy.status.dims, -1)
-    agrees(lazy.isel(last), whole.isel(last))
+    assert_equal_lazily(lazy.isel(last), whole.isel(last))
     first = {str(lazy.status.dims[0]): 0}
     assert lazy.isel(first).rockframe.verdict == whole.isel(first).rockframe.verdict
     assert len(rf.table(lazy)) == len(rf.table(whole))
 
 
 @pytest.mark.filterwarnings("ignore::rockframe.errors.SolverWarning")
-def test_only_used_chunks_are_read(tmp_path, monkeypatch, dask_is_there):
+def test_only_used_chunks_are_read(tmp_path, monkeypatch, has_dask):
     whole = on_a_grid(store=tmp_path / "study")
     lazy_dataset._rows.cache_clear()
     read, plain = [], Store.get
@@ -131,17 +131,17 @@ def test_only_used_chunks_are_read(tmp_path, monkeypatch, dask_is_there):
     np.testing.assert_array_equal(part.peak_rotation, whole.isel(motion=1, scale=0).peak_rotation)
     # motions change slowest, so that neighbouring cases are those of a motion
     chunks = len(list((tmp_path / "study").glob("chunk-*")))
-    assert 1 <= len(set(read)) <= (chunks if dask_is_there else 2)
+    assert 1 <= len(set(read)) <= (chunks if has_dask else 2)
     assert len(read) == len(set(read))
 
 
 @pytest.mark.filterwarnings("ignore::rockframe.errors.SolverWarning")
-def test_missing_chunks_appear_as_gaps(tmp_path, dask_is_there):
+def test_missing_chunks_appear_as_gaps(tmp_path, has_dask):
     on_a_grid(store=tmp_path / "study")
     (tmp_path / "study" / "chunk-000002.arrays").unlink()
     lazy_dataset._rows.cache_clear()
     whole, lazy = (rf.open_study(tmp_path / "study", lazy=one) for one in (False, True))
-    agrees(lazy, whole)
+    assert_equal_lazily(lazy, whole)
     assert int((lazy.status == RunStatus.NOT_RUN).sum()) == 7
     assert lazy.rockframe.verdict == whole.verdict
     on_a_grid(store=tmp_path / "study")
@@ -195,7 +195,7 @@ def test_with_dask_statistics_stream(tmp_path, monkeypatch):
         numbers = lazy.drop_vars(["rotation", "message"])
         numbers.to_netcdf(tmp_path / "whole.nc")
     with xr.open_dataset(tmp_path / "whole.nc") as read:
-        agrees(read, numbers)
+        assert_equal_lazily(read, numbers)
 
 
 @pytest.mark.filterwarnings("ignore::rockframe.errors.SolverWarning")
@@ -214,14 +214,14 @@ def test_study_larger_than_memory_is_read_from_its_store(tmp_path, monkeypatch):
     scales = np.linspace(0.1, 1, 100)
     whole = rf.sweep(SYSTEM, MOTIONS["weak"], scale=scales, free_vibration="5 s")
     monkeypatch.setattr(memory, "available_memory", lambda: 2e4)
-    told = r"100 cases need about 0.058 MB of memory .* 0.02 MB are available; "
-    with pytest.raises(StudyError, match=f"{told}run fewer cases or give a store, from which"):
+    message = r"100 cases need about 0.058 MB of memory .* 0.02 MB are available; "
+    with pytest.raises(StudyError, match=f"{message}run fewer cases or give a store, from which"):
         rf.sweep(SYSTEM, MOTIONS["weak"], scale=scales, free_vibration="5 s")
-    with pytest.warns(SolverWarning, match=f"{told}they are read from the store"):
+    with pytest.warns(SolverWarning, match=f"{message}they are read from the store"):
         runs = rf.sweep(
             SYSTEM, MOTIONS["weak"], scale=scales, free_vibration="5 s", store=tmp_path / "study"
         )
-    agrees(runs, whole)
+    assert_equal_lazily(runs, whole)
     assert "verdict" not in runs.attrs
     assert runs.rockframe.verdict == whole.verdict
     monkeypatch.undo()
@@ -235,13 +235,13 @@ def test_an_interrupted_study_that_does_not_fit_is_not_read(tmp_path, monkeypatc
     monkeypatch.setattr(memory, "available_memory", lambda: 2e4)
     monkeypatch.setattr(Store, "get", lambda *_: pytest.fail("it has been read"))
     stopped = Interrupting(2)
-    with pytest.warns(SolverWarning) as said:
+    with pytest.warns(SolverWarning) as caught:
         runs = rf.sweep(
             SYSTEM, MOTIONS["weak"], scale=np.linspace(0.1, 1, 100), free_vibration="5 s",
             store=tmp_path / "study", chunk=30, executor=stopped,
         )  # fmt: skip
     assert any("interrupted; 60 of 100 cases have been run, and are kept" in str(one.message)
-               for one in said)  # fmt: skip
+               for one in caught)  # fmt: skip
     assert runs.status.size == 100
 
 

@@ -206,13 +206,13 @@ def test_converted_responses_are_read_in_their_unit():
         peak_relative_rotation=(100 * runs.peak_relative_rotation).assign_attrs(units="percent"),
     )
     for ask in (
-        lambda given: rf.fragility(given, "PGA", limits=[("peak_rotation", "5 deg"), 0.3]),
-        lambda given: rf.fractile_curves(given, "PGA", "peak_rotation", levels=([2, 4], "deg")),
-        lambda given: rf.fractile_curves(given, "PGA"),
-        lambda given: rf.cloud_analysis(
-            given.isel(scale=1), "PGA", response="peak_rotation", limits=["5 deg"]
+        lambda dataset: rf.fragility(dataset, "PGA", limits=[("peak_rotation", "5 deg"), 0.3]),
+        lambda dataset: rf.fractile_curves(dataset, "PGA", "peak_rotation", levels=([2, 4], "deg")),
+        lambda dataset: rf.fractile_curves(dataset, "PGA"),
+        lambda dataset: rf.cloud_analysis(
+            dataset.isel(scale=1), "PGA", response="peak_rotation", limits=["5 deg"]
         ),
-        lambda given: rf.compare_intensities(given.isel(scale=1), ["PGA", "PGV"]),
+        lambda dataset: rf.compare_intensities(dataset.isel(scale=1), ["PGA", "PGV"]),
     ):
         xr.testing.assert_allclose(ask(turned), ask(runs), rtol=1e-12)
     wrong = runs.assign(peak_rotation=runs.peak_rotation.assign_attrs(units="m"))
@@ -228,9 +228,9 @@ def test_converted_scales_give_the_same_capacities():
     runs = rf.incremental_dynamic_analysis(rf.System(block), motions, scale=[2, 4, 6, 8], **HOW)
     turned = runs.assign_coords(scale=("scale", 100 * runs.scale.values, {"units": "percent"}))
     for ask in (
-        lambda given: rf.fragility(given, "PGA", trials="capacities").median_intensity,
-        lambda given: rf.fractile_curves(given, "PGA").response_fractile,
-        lambda given: rf.fractile_curves(given).response_fractile,
+        lambda dataset: rf.fragility(dataset, "PGA", trials="capacities").median_intensity,
+        lambda dataset: rf.fractile_curves(dataset, "PGA").response_fractile,
+        lambda dataset: rf.fractile_curves(dataset).response_fractile,
     ):
         xr.testing.assert_allclose(ask(turned), ask(runs), rtol=1e-12)
 

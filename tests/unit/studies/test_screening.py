@@ -107,10 +107,10 @@ def test_screening_does_not_depend_on_chunks_stores_or_lanes(runs, tmp_path, mon
     cases = {**AXES, "scale": np.linspace(0.4, 1.1, 128).tolist()}
     lanes = rf.sweep(SYSTEM, shaking(), **cases, accuracy="screen")
     assert lanes.repeated.size >= MIN_CASES_IN_LANES
-    kept = rf.sweep(SYSTEM, shaking(), **cases, accuracy="screen", chunk=57, store=tmp_path / "s")
+    stored = rf.sweep(SYSTEM, shaking(), **cases, accuracy="screen", chunk=57, store=tmp_path / "s")
     several = rf.open_study(tmp_path / "s")
     few = rf.sweep(SYSTEM, shaking(), **AXES, accuracy="screen", chunk=1)
-    for one, other in ((lanes, kept), (kept, several), (runs["screen"], few)):
+    for one, other in ((lanes, stored), (stored, several), (runs["screen"], few)):
         xr.testing.assert_identical(one.drop_attrs(deep=False), other.drop_attrs(deep=False))
 
 
@@ -154,10 +154,10 @@ def on_rigid_ground():
 @pytest.mark.parametrize("name", on_rigid_ground())
 def test_screening_on_rigid_ground_runs_all_cases_at_standard(name, tmp_path):
     system = on_rigid_ground()[name]
-    asked = {"scale": np.linspace(0.3, 1.5, 24).tolist(), "gravity": ["9.81 m/s^2", "9.8 m/s^2"]}
-    plain = rf.sweep(system, shaking(), **asked)
+    axes = {"scale": np.linspace(0.3, 1.5, 24).tolist(), "gravity": ["9.81 m/s^2", "9.8 m/s^2"]}
+    plain = rf.sweep(system, shaking(), **axes)
     for store in (None, tmp_path / "study"):
-        found = rf.sweep(system, shaking(), **asked, accuracy="screen", store=store)
+        found = rf.sweep(system, shaking(), **axes, accuracy="screen", store=store)
         xr.testing.assert_identical(
             found.drop_vars(SCREENED).drop_attrs(deep=False), plain.drop_attrs(deep=False)
         )
@@ -168,7 +168,7 @@ def test_screening_on_rigid_ground_runs_all_cases_at_standard(name, tmp_path):
         assert found.attrs["accuracy"] == "standard"
         words = "all ran at 'standard', which costs less here than 'screen'."
         assert found.attrs["verdict"].endswith(words)
-    alone = rf.case(found, scale=asked["scale"][9], gravity="9.8 m/s^2").simulate(outputs=None)
+    alone = rf.case(found, scale=axes["scale"][9], gravity="9.8 m/s^2").simulate(outputs=None)
     assert alone.peak_rotation.item() == plain.peak_rotation.isel(scale=9, gravity=1).item()
 
 

@@ -104,8 +104,8 @@ def test_restrainers_are_labelled_by_name(tmp_path):
     runs = rf.sweep(one, PULSE, scale=[0.3, 1.0], outputs=[], store=tmp_path / "kept", **FOUR)
     assert rf.fragility(runs, limits=[limit[:2]]).limit_state.size == 2
     for lazy in (False, True):
-        kept = rf.open_study(tmp_path / "kept", lazy=lazy)
-        assert kept.restrainer.values.tolist() == ["only"]
+        stored = rf.open_study(tmp_path / "kept", lazy=lazy)
+        assert stored.restrainer.values.tolist() == ["only"]
 
 
 def test_restrainer_names_of_a_function_are_used_if_all_cases_agree():
@@ -115,9 +115,9 @@ def test_restrainer_names_of_a_function_are_used_if_all_cases_agree():
     def unlike(number: int) -> rf.System:
         return rf.System(STATUE, PADS, tie(f"tie {number}", -1))
 
-    kept = {"outputs": ["energy"], **FOUR}
-    assert rf.sweep(alike, PULSE, strength=[1.0, 9.0], **kept).restrainer.values == ["upper"]
-    assert rf.sweep(unlike, PULSE, number=[7, 8], **kept).restrainer.values == ["1"]
+    options = {"outputs": ["energy"], **FOUR}
+    assert rf.sweep(alike, PULSE, strength=[1.0, 9.0], **options).restrainer.values == ["upper"]
+    assert rf.sweep(unlike, PULSE, number=[7, 8], **options).restrainer.values == ["1"]
 
 
 @pytest.mark.wide
@@ -126,9 +126,9 @@ def test_case_with_other_restrainer_names_warns():
         names = ("east", "west") if number == 5 else ("west", "east")
         return rf.System(STATUE, PADS, *(tie(name, -1) for name in names))
 
-    asked = {"outputs": ["rotation"], "duration": "0.02 s", "accuracy": "fast"}
+    options = {"outputs": ["rotation"], "duration": "0.02 s", "accuracy": "fast"}
     with plainly(), pytest.warns(ModelWarning, match="its restrainers are east, west, not as"):
-        runs = rf.sweep(scene, PULSE, number=range(40), **asked)
+        runs = rf.sweep(scene, PULSE, number=range(40), **options)
     assert runs.restrainer.values.tolist() == ["west", "east"]
     assert np.flatnonzero(runs.message != "none").tolist() == [5]
 
@@ -137,8 +137,8 @@ def test_case_with_other_restrainer_names_warns():
     "outputs", [None, *(pytest.param(one, marks=pytest.mark.long) for one in ([], ["energy"]))]
 )
 def test_sweep_pads_cases_with_fewer_bodies(tmp_path, outputs):
-    asked = {"drums": [3, 2, 4], "scale": [0.5, 1.0], "outputs": outputs, **FOUR}
-    runs = rf.sweep(column, PULSE, chunk=1, store=tmp_path / "kept", **asked)
+    options = {"drums": [3, 2, 4], "scale": [0.5, 1.0], "outputs": outputs, **FOUR}
+    runs = rf.sweep(column, PULSE, chunk=1, store=tmp_path / "kept", **options)
     assert runs.body.values.tolist() == [1, 2, 3, 4]
     slips = runs.peak_body_slip
     assert np.isfinite(slips).sum("body").squeeze().values.tolist() == [[3, 3], [2, 2], [4, 4]]
@@ -148,7 +148,7 @@ def test_sweep_pads_cases_with_fewer_bodies(tmp_path, outputs):
     assert alone.peak_slip == alone.peak_body_slip[0]
     xr_again = rf.open_study(tmp_path / "kept", lazy=True)
     np.testing.assert_array_equal(xr_again.peak_body_slip.values, slips.values)
-    in_memory = rf.sweep(column, PULSE, **asked)
+    in_memory = rf.sweep(column, PULSE, **options)
     np.testing.assert_array_equal(in_memory.peak_body_slip, slips)
 
 

@@ -25,8 +25,8 @@ SPREAD = {"width": ("normal", "0.5 m", "2 cm"), "scale": ("lognormal", 0.8, 0.15
 FAST = {"accuracy": "fast", "free_vibration": "4 s", "progress": False}
 
 
-def simulated(**asked):
-    return rf.subset_simulation(SYSTEM, **{"motions": PULSE, "spread": SPREAD, **FAST, **asked})
+def simulated(**options):
+    return rf.subset_simulation(SYSTEM, **{"motions": PULSE, "spread": SPREAD, **FAST, **options})
 
 
 @pytest.fixture(scope="module")
@@ -83,9 +83,9 @@ def test_samples_can_be_reproduced_as_runs(found):
 
 @pytest.mark.long
 def test_same_seed_reproduces_the_result(found):
-    asked = {"cases": 300, "motions": MOTIONS, "correlation": {("width", "scale"): 0.3}}
-    alike(simulated(seed=5, chunk=17, **asked), found)
-    other = simulated(seed=8, **asked)
+    options = {"cases": 300, "motions": MOTIONS, "correlation": {("width", "scale"): 0.3}}
+    alike(simulated(seed=5, chunk=17, **options), found)
+    other = simulated(seed=8, **options)
     assert other.exceedance_probability.item() != found.exceedance_probability.item()
 
 
@@ -98,13 +98,13 @@ def test_same_seed_reproduces_the_result(found):
     ],
 )
 def test_probabilities_match_monte_carlo(limit, scale):
-    asked = {
+    options = {
         "motions": MOTIONS,
         "spread": {**SPREAD, "scale": ("lognormal", scale, 0.15)},
         "correlation": {("width", "scale"): 0.3},
     }
     plain = rf.probability_of_overturning(
-        SYSTEM, cases=10_000, sampling="random", seed=1, **asked, **FAST
+        SYSTEM, cases=10_000, sampling="random", seed=1, **options, **FAST
     )
     (state, *_) = limit_states([limit], owner="here")
     count = int(exceeds(plain, state).sum())
@@ -112,7 +112,7 @@ def test_probabilities_match_monte_carlo(limit, scale):
     low, high = stats.binomtest(count, 10_000).proportion_ci(0.999, method="exact")
     held, every = 0, []
     for seed in range(4):
-        one = simulated(cases=400, limit=limit, seed=seed, **asked)
+        one = simulated(cases=400, limit=limit, seed=seed, **options)
         ends = [float(one[f"exceedance_probability_{end}_bound"]) for end in ("lower", "upper")]
         held += ends[0] <= high
         held += ends[1] >= low
@@ -247,11 +247,11 @@ def test_interrupted_subset_simulation_warns_and_resumes(tmp_path, monkeypatch):
     run = lines.run_study
     left = [14]
 
-    def interrupted(*given, **named):
+    def interrupted(*args, **kwargs):
         if not left[0]:
             raise KeyboardInterrupt
         left[0] -= 1
-        return run(*given, **named)
+        return run(*args, **kwargs)
 
     with monkeypatch.context() as keys:
         keys.setattr(lines, "run_study", interrupted)
@@ -272,7 +272,7 @@ def test_interrupted_subset_simulation_warns_and_resumes(tmp_path, monkeypatch):
 
 
 @pytest.mark.parametrize(
-    ("asked", "words"),
+    ("options", "words"),
     [
         ({"limit": "uplift"}, r"limit 'uplift' is met or not, .* such as 0\.1"),
         ({"limit": ("peak_slip", None)}, "limit 'peak slip' is met or not"),
@@ -289,9 +289,9 @@ def test_interrupted_subset_simulation_warns_and_resumes(tmp_path, monkeypatch):
         ({"correlation": {("width", "height"): 0.2}}, "correlation needs pairs of two of width, s"),
     ],
 )
-def test_invalid_subset_simulation_arguments_are_refused(asked, words):
+def test_invalid_subset_simulation_arguments_are_refused(options, words):
     with pytest.raises(ComponentError, match=words):
-        simulated(**asked)
+        simulated(**options)
 
 
 def test_missing_limit_variables_are_named():

@@ -29,7 +29,7 @@ def whole(tmp_path_factory):
     return folder, the_sweep(folder)
 
 
-def is_part_of(part, whole):
+def assert_part_of(part, whole):
     """Check that the cases of a part equal those of the complete sweep; return their number."""
     done = part.status != RunStatus.NOT_RUN
     assert part.status.size == CASES
@@ -45,13 +45,13 @@ def test_killed_sweep_resumes_to_identical_results(whole, tmp_path):
     rng = random.Random(5)
     for _ in range(2):
         running = child(folder)
-        kept = len(list(folder.glob("chunk-*")))
-        while running.poll() is None and len(list(folder.glob("chunk-*"))) <= kept:
+        chunks = len(list(folder.glob("chunk-*")))
+        while running.poll() is None and len(list(folder.glob("chunk-*"))) <= chunks:
             time.sleep(0.005)
         time.sleep(rng.uniform(0.0, 0.15))
         running.kill()
         running.communicate()
-        lost += is_part_of(rf.open_study(folder), whole[1]) < CASES
+        lost += assert_part_of(rf.open_study(folder), whole[1]) < CASES
     assert lost > 0
     runs = the_sweep(folder)
     assert as_bytes(runs) == as_bytes(whole[1])
@@ -118,7 +118,7 @@ def test_full_disk_preserves_written_chunks(disk, whole):
     folder = disk.place / "study"
     with pytest.raises(StudyError, match=r"cannot be written.*No space left"):
         the_sweep(folder)
-    assert 0 < is_part_of(rf.open_study(folder), whole[1]) < CASES
+    assert 0 < assert_part_of(rf.open_study(folder), whole[1]) < CASES
     assert not list(folder.glob(".*"))
     assert disk.mount("10m", Disk.REMOUNT)  # with more room, the same call continues
     assert as_bytes(the_sweep(folder)) == as_bytes(whole[1])
@@ -131,8 +131,8 @@ def test_file_size_limit_raises_like_a_full_disk(whole, tmp_path):
     the_sweep(folder)
     for chunk in folder.glob("chunk-00001*"):
         chunk.unlink()
-    there = is_part_of(rf.open_study(folder), whole[1])
-    assert there == CASES - 30
+    finished = assert_part_of(rf.open_study(folder), whole[1])
+    assert finished == CASES - 30
     limits = resource.getrlimit(resource.RLIMIT_FSIZE)
     resource.setrlimit(resource.RLIMIT_FSIZE, (200, limits[1]))
     try:
@@ -140,7 +140,7 @@ def test_file_size_limit_raises_like_a_full_disk(whole, tmp_path):
             the_sweep(folder)
     finally:
         resource.setrlimit(resource.RLIMIT_FSIZE, limits)
-    assert is_part_of(rf.open_study(folder), whole[1]) == there
+    assert assert_part_of(rf.open_study(folder), whole[1]) == finished
     assert as_bytes(the_sweep(folder)) == as_bytes(whole[1])
 
 
@@ -154,12 +154,12 @@ def test_a_folder_that_has_become_read_only_can_be_read(disk, whole):
     assert disk.mount("10m", Disk.REMOUNT)
     (folder / "chunk-000007.arrays").unlink()
     assert disk.mount("10m", flags)
-    asked = []
+    executor = []
     with pytest.raises(StudyError, match=r"cannot be kept in .*Read-only file system"):
-        the_sweep(folder, executor=asked)  # before anything runs
+        the_sweep(folder, executor=executor)  # before anything runs
     with pytest.raises(StudyError, match=r"cannot be kept in .*Read-only file system"):
         rf.sweep(SYSTEM, PULSE, scale=[1.0], store=disk.place / "another")
-    assert is_part_of(rf.open_study(folder), whole[1]) == CASES - 3
+    assert assert_part_of(rf.open_study(folder), whole[1]) == CASES - 3
 
 
 def test_pool_broken_on_submit_raises():

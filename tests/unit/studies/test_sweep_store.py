@@ -59,16 +59,16 @@ def test_many_chunks_are_split_into_subfolders(tmp_path, monkeypatch):
 
 def test_store_can_be_read_while_the_sweep_runs(tmp_path):
     folder = tmp_path / "study"
-    seen = []
+    counts = []
 
     def scene(height):
         if (folder / "study.json").exists():
-            seen.append(int((rf.open_study(folder).status != RunStatus.NOT_RUN).sum()))
+            counts.append(int((rf.open_study(folder).status != RunStatus.NOT_RUN).sum()))
         return rf.System(BLOCK.replace(height=height))
 
     rf.sweep(scene, PULSE, height=(np.linspace(3, 4, 12), "m"), chunk=1, store=folder)
-    assert len(seen) == 12
-    assert 0 < max(seen) < 12  # either of two threads may read first
+    assert len(counts) == 12
+    assert 0 < max(counts) < 12  # either of two threads may read first
 
 
 def test_case_is_restored_from_the_folder_alone(whole, monkeypatch):
@@ -100,8 +100,8 @@ def test_motions_with_vertical_component_survive_the_store(tmp_path, monkeypatch
     def run(**changes):
         return rf.sweep(system, motions, scale=[1, 2], chunk=4, **changes)
 
-    plain, kept = run(), run(store=folder)
-    assert as_bytes(kept) == as_bytes(plain)
+    plain, resumable = run(), run(store=folder)
+    assert as_bytes(resumable) == as_bytes(plain)
     (folder / "chunk-000001.arrays").unlink()
     assert as_bytes(run(store=folder)) == as_bytes(plain)
     assert as_bytes(rf.open_study(folder)) == as_bytes(plain)
@@ -144,7 +144,7 @@ def test_different_scene_function_is_refused(tmp_path):
 def test_other_formats_and_damaged_files_are_refused(copied):
     head, chunk = copied / "study.json", copied / "chunk-000004.arrays"
     keep, plain = head.read_text(), chunk.read_bytes()
-    for kept, words in (
+    for content, words in (
         (
             keep.replace('"format": 3', '"format": 5'),
             r"\(format 5\), which this version cannot read",
@@ -153,7 +153,7 @@ def test_other_formats_and_damaged_files_are_refused(copied):
         (keep.replace('"cases":', '"kases":'), "entries are missing"),
         ("", "study.json: damaged"),
     ):
-        head.write_text(kept)
+        head.write_text(content)
         for read in (rf.open_study, the_sweep):
             with pytest.raises(StudyError, match=words):
                 read(copied)
@@ -212,9 +212,9 @@ def test_study_of_another_version_can_be_read_but_not_resumed(copied, whole):
             found = rf.open_study(copied, lazy=lazy)
         assert found.attrs["rockframe_version"] == "0.0.9"
         assert found.attrs["source"].startswith("rockframe 0.0.9, ")
-        there = found.status != RunStatus.NOT_RUN
-        assert int((~there).sum()) == 3
-        expected = whole[1].peak_rotation.where(there)
+        finished = found.status != RunStatus.NOT_RUN
+        assert int((~finished).sum()) == 3
+        expected = whole[1].peak_rotation.where(finished)
         np.testing.assert_array_equal(found.peak_rotation, expected)
 
 

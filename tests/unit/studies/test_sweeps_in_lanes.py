@@ -254,10 +254,10 @@ def test_critical_scale_works_for_an_uncompilable_law(fallbacks):
 @pytest.mark.long
 def test_chunks_of_a_law_that_cannot_be_compiled_are_small(monkeypatch, fallbacks):
     rf.register(TabulatedPads)
-    asked = []
+    calls = []
 
     def size(self, workers, *, as_python):
-        asked.append((as_python, chunk_size(self, workers, as_python=as_python)))
+        calls.append((as_python, chunk_size(self, workers, as_python=as_python)))
         return 10
 
     chunk_size = study.Study.chunk_size
@@ -269,7 +269,7 @@ def test_chunks_of_a_law_that_cannot_be_compiled_are_small(monkeypatch, fallback
             scales = np.linspace(0.01, 0.02, 10)
             rf.sweep(scene, MOTIONS[0], axes=axes, scale=scales, duration="0.03 s")
     fallbacks.clear()
-    assert [as_python for as_python, _ in asked] == [True, True, False, False]
+    assert [as_python for as_python, _ in calls] == [True, True, False, False]
     long = plan_study(
         rf.System(BLOCK, PADS), MOTIONS[0], {"scale": np.linspace(0.1, 2.0, 9000)}, None
     )
@@ -292,8 +292,8 @@ def test_failure_in_preparing_lanes_warns_and_falls_back(monkeypatch):
     monkeypatch.setattr(study, "MIN_CASES_IN_LANES", 1)
     monkeypatch.setattr(study, "COMPILING_SHARE", math.inf)
     monkeypatch.setattr(in_lanes, "run_start", fails)
-    told = r"beside others failed \(ZeroDivisionError: no such lane\).*error in rockframe"
-    with pytest.warns(ModelWarning, match=told):
+    message = r"beside others failed \(ZeroDivisionError: no such lane\).*error in rockframe"
+    with pytest.warns(ModelWarning, match=message):
         runs = swept()
     assert runs.attrs["driver"] == "each case alone"
     for name in ("peak_rotation", "status", "impact_count"):
@@ -314,7 +314,7 @@ def test_failure_in_preparing_lanes_warns_and_falls_back(monkeypatch):
 
 
 def test_lanes_are_compiled_only_if_they_save_time(monkeypatch):
-    system, asked = rf.System(BLOCK, PADS), []
+    system, calls = rf.System(BLOCK, PADS), []
     shaking = rf.GroundMotion.from_arrays((np.ones(1501), "m/s^2"), "0.02 s")
 
     def patience(count, **options):
@@ -330,12 +330,12 @@ def test_lanes_are_compiled_only_if_they_save_time(monkeypatch):
     assert patience(100_000, accuracy="fast") > 20.0
 
     def never(run, seconds):
-        asked.append(seconds)
+        calls.append(seconds)
         return False
 
     monkeypatch.setattr(in_lanes, "can_run_in_lanes", never)
     scales = np.linspace(0.1, 0.2, 500)
     runs = rf.sweep(system, MOTIONS[3], scale=scales, accuracy="fast", duration="0.1 s")
-    assert asked
-    assert max(asked) < 1.0
+    assert calls
+    assert max(calls) < 1.0
     assert runs.attrs["driver"] == "each case alone"
