@@ -435,10 +435,10 @@ def test_reactions_follow_from_newtons_law():
                     np.testing.assert_allclose(
                         response[f"{found}_reaction"], expected, atol=1e-9 * mass * G
                     )
-            shown = response.soil_reaction if "soil_reaction" in response and name in (
+            reaction = response.soil_reaction if "soil_reaction" in response and name in (
                 "soil", "one body"
             ) else response.left_reaction + response.right_reaction  # fmt: skip
-            np.testing.assert_allclose(response.vertical_reaction, shown, atol=1e-9 * mass * G)
+            np.testing.assert_allclose(response.vertical_reaction, reaction, atol=1e-9 * mass * G)
 
 
 def test_base_overturning_moment_is_that_of_pad_reactions():
@@ -504,13 +504,13 @@ def test_runs_start_from_rest_rotation_or_initial_state():
         second = system.simulate(
             PULSE.window("0.4 s"), free_vibration="0.3 s", initial=first, accuracy="reference"
         )
-        whole = system.simulate(PULSE, free_vibration="0.3 s", accuracy="reference")
+        continuous = system.simulate(PULSE, free_vibration="0.3 s", accuracy="reference")
         both = np.concatenate([first.rotation.values, second.rotation.values[1:]])
         np.testing.assert_allclose(
-            both, whole.rotation.values[: both.size], atol=2e-7 * np.abs(both).max()
+            both, continuous.rotation.values[: both.size], atol=2e-7 * np.abs(both).max()
         )
         early = max(first.right_peak_rotation.item(), second.right_peak_rotation.item())
-        assert early == pytest.approx(whole.right_peak_rotation.item(), rel=1e-6)
+        assert early == pytest.approx(continuous.right_peak_rotation.item(), rel=1e-6)
 
 
 def test_certified_margin_is_that_of_overturning_side():

@@ -210,9 +210,9 @@ def test_transmissibilities_of_floor_and_oscillator_multiply():
 
 def test_stiff_floors_follow_ground_and_soft_floors_stand_still():
     smooth = np.convolve(NOISE, np.hanning(30), "full")
-    for period, rest in (("0 s", 0.0), ("1e-5 s", 1e-4), ("0.001 s", 1e-2)):
+    for period, tolerance in (("0 s", 0.0), ("1e-5 s", 1e-4), ("0.001 s", 1e-2)):
         floor = motion(smooth).through_storeys([period], 0.05).si.horizontal.samples
-        close(floor, ground_at_samples(floor, smooth), rest)
+        close(floor, ground_at_samples(floor, smooth), tolerance)
     peak = np.abs(smooth).max()
     for period in (1e3, 1e5):
         floor = motion(smooth).through_storeys([f"{period} s"], 0.0, free_vibration="0 s")
@@ -253,11 +253,11 @@ def test_truncated_modes_move_with_ground():
     """The first mode alone suffices where the others are stiff relative to the motion."""
     smooth = motion(np.convolve(NOISE, np.hanning(40), "full") / 10.0)
     building = {"storeys": 4, "floor": 2, "period": "0.2 s", "time_step": "0.002 s"}
-    whole = smooth.through_storeys(**building).si.horizontal.samples
+    all_modes = smooth.through_storeys(**building).si.horizontal.samples
     errors = []
     for modes in (1, 2, 3, 4):
         part = smooth.through_storeys(**building, modes=modes).si.horizontal.samples
-        errors.append(np.abs(part - whole).max() / np.abs(whole).max())
+        errors.append(np.abs(part - all_modes).max() / np.abs(all_modes).max())
     assert errors[0] < 0.1
     assert errors[3] == 0.0
     assert sorted(errors, reverse=True) == errors

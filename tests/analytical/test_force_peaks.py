@@ -84,11 +84,11 @@ def test_force_peak_just_before_end_of_ground_step_is_found():
 
 
 def test_step_table_growth_does_not_change_results(monkeypatch):
-    whole = SCENES["pads"].simulate(PULSE, duration="1.5 s", points=TOP)
+    unlimited = SCENES["pads"].simulate(PULSE, duration="1.5 s", points=TOP)
     monkeypatch.setattr("rockframe.solve.integrate.STEP_ROWS", 1)
     monkeypatch.setattr("rockframe.solve.integrate.STEPS_PER_INTERVAL", 0.0)
     grown = SCENES["pads"].simulate(PULSE, duration="1.5 s", points=TOP)
-    assert grown.drop_attrs().identical(whole.drop_attrs())
+    assert grown.drop_attrs().identical(unlimited.drop_attrs())
 
 
 @pytest.mark.wide

@@ -108,8 +108,8 @@ def test_oscillator_peaks_match_response_spectrum(damping):
         exact = exact_history(samples, STEP, period, damping)
         assert np.abs(histories[place, : exact.size] - exact).max() < 1e-8 * np.abs(exact).max()
     peaks = oscillators.peaks(samples, histories)
-    made = rf.GroundMotion.from_arrays((samples, "m/s^2"), f"{STEP} s").si.horizontal
-    displacement = spectral_peaks(made, PERIODS, damping)[:, 0]
+    signal = rf.GroundMotion.from_arrays((samples, "m/s^2"), f"{STEP} s").si.horizontal
+    displacement = spectral_peaks(signal, PERIODS, damping)[:, 0]
     np.testing.assert_allclose(
         peaks.spectrum, (2.0 * np.pi / PERIODS) ** 2 * displacement, rtol=1e-4
     )
@@ -127,8 +127,8 @@ def test_oscillator_peak_after_end_of_motion_is_found():
     oscillators = Oscillators(np.array([3.0]), 0.05, STEP)
     peaks = oscillators.peaks(samples, oscillators.histories(samples))
     assert peaks.times[0] > 0.6
-    made = rf.GroundMotion.from_arrays((samples, "m/s^2"), f"{STEP} s").si.horizontal
-    expected = spectral_peaks(made, oscillators.periods, 0.05)[0, 0] * (2.0 * np.pi / 3.0) ** 2
+    signal = rf.GroundMotion.from_arrays((samples, "m/s^2"), f"{STEP} s").si.horizontal
+    expected = spectral_peaks(signal, oscillators.periods, 0.05)[0, 0] * (2.0 * np.pi / 3.0) ** 2
     assert peaks.spectrum[0] == pytest.approx(expected, rel=1e-6)
 
 
@@ -157,13 +157,13 @@ def test_wavelet_effects_match_finite_differences():
     oscillators = Oscillators(PERIODS, damping, STEP)
     peaks = oscillators.peaks(samples, oscillators.histories(samples))
     targets = np.full(PERIODS.size, 3.0)
-    made = make_adjustment(oscillators, peaks, targets, COUNT)
-    assert made.effects.shape == (peaks.values.size, peaks.values.size)
+    adjustment = make_adjustment(oscillators, peaks, targets, COUNT)
+    assert adjustment.effects.shape == (peaks.values.size, peaks.values.size)
     small = 1e-3
 
     @cache
     def response(oscillator, column=None):
-        changed = samples if column is None else samples + small * made.wavelets[:, column]
+        changed = samples if column is None else samples + small * adjustment.wavelets[:, column]
         return exact_history(changed, STEP, PERIODS[oscillator], damping, parts)
 
     for column in range(0, peaks.values.size, 9):
@@ -172,7 +172,7 @@ def test_wavelet_effects_match_finite_differences():
             at = np.rint(peaks.times[row] * parts / STEP).astype(int)
             change = response(which, column)[at] - response(which)[at]
             slope = np.sign(peaks.values[row]) * change / small / 3.0
-            assert made.effects[row, column] == pytest.approx(slope, abs=2e-3)
+            assert adjustment.effects[row, column] == pytest.approx(slope, abs=2e-3)
 
 
 def test_wavelet_amplitude_brings_peak_to_target():
@@ -183,8 +183,8 @@ def test_wavelet_amplitude_brings_peak_to_target():
     peaks = oscillators.peaks(samples, histories)
     target = np.array([1.01 * peaks.spectrum[0]])
     alone = OscillatorPeaks(*(values[:1] for values in peaks))
-    made = make_adjustment(oscillators, alone, target, COUNT)
-    changed = samples + made.wavelets @ made.amplitudes(1e-12)
+    adjustment = make_adjustment(oscillators, alone, target, COUNT)
+    changed = samples + adjustment.wavelets @ adjustment.amplitudes(1e-12)
     at = np.interp(
         peaks.times[0] / STEP,
         np.arange(histories.shape[1]),
@@ -199,8 +199,8 @@ def test_second_peak_does_not_exceed_target():
     oscillators = Oscillators(np.array([0.5]), 0.05, STEP)
     peaks = oscillators.peaks(samples, oscillators.histories(samples))
     assert peaks.values.size > 1
-    made = make_adjustment(oscillators, peaks, np.array([0.9 * peaks.spectrum[0]]), COUNT)
-    found = made.amplitudes(1e-8)
-    left = made.misfits - made.effects @ found
+    adjustment = make_adjustment(oscillators, peaks, np.array([0.9 * peaks.spectrum[0]]), COUNT)
+    found = adjustment.amplitudes(1e-8)
+    left = adjustment.misfits - adjustment.effects @ found
     assert abs(left[0]) < 1e-3
     assert (left > -0.006).all()

@@ -184,7 +184,7 @@ def test_free_vibration_equals_motion_padded_with_zeros():
     pads = Pads(damping_ratio=0.02)
     upwards = np.zeros(401)
     upwards[:41] = rough_record(41, STEP, 0.5, seed=5)
-    whole = rf.GroundMotion.from_arrays(
+    combined = rf.GroundMotion.from_arrays(
         (np.zeros(401), "m/s^2"), f"{STEP} s", vertical=(upwards, "m/s^2")
     )
     short = rf.GroundMotion.from_arrays(
@@ -192,7 +192,7 @@ def test_free_vibration_equals_motion_padded_with_zeros():
     )
     expected, _ = oscillator(pads.omega_v, 2.0 * pads.c, -upwards, STEP)
     for response in (
-        pads.system().simulate(whole, accuracy="reference"),
+        pads.system().simulate(combined, accuracy="reference"),
         pads.system().simulate(short, duration="2 s", accuracy="reference"),
         pads.system().simulate(short, free_vibration="1.8 s", accuracy="reference"),
     ):

@@ -133,10 +133,10 @@ def test_proof_holds_for_restitution_tolerance():
 def test_set_around_critical_scale_splits_into_safe_and_overturning_parts():
     scene, motion = system(4), half_sine()
     at = 0.5 * (CASES[0][-2] + CASES[0][-1])
-    whole = rf.prove(scene, motion, scale=at, scale_tolerance=2e-3, parts=1)
-    assert (whole.parts, whole.safe_share, whole.overturning_share) == (1, 0.0, 0.0)
+    undivided = rf.prove(scene, motion, scale=at, scale_tolerance=2e-3, parts=1)
+    assert (undivided.parts, undivided.safe_share, undivided.overturning_share) == (1, 0.0, 0.0)
     found = rf.prove(scene, motion, scale=at, scale_tolerance=2e-3, parts=12)
-    assert not whole.decided
+    assert not undivided.decided
     assert not found.decided
     assert 1 < found.parts <= 12
     assert 0.45 < found.safe_share <= 0.5

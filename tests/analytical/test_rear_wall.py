@@ -197,8 +197,8 @@ def test_wall_in_statics_studies_figures_and_files(tmp_path):
         restitution=[-0.4, -0.1], accuracy="fast", progress=False,
     )  # fmt: skip
     assert runs.peak_rotation.shape == (2, 1)
-    given = rf.System(FACADE, rf.RearWall(restitution=-0.2)).assembly
-    assert [name for name, _ in parameters(given)][-1] == "restitution of the wall"
+    assembly = rf.System(FACADE, rf.RearWall(restitution=-0.2)).assembly
+    assert [name for name, _ in parameters(assembly)][-1] == "restitution of the wall"
     described = json.loads(json.dumps(system.to_dict()))
     assert rf.System.from_dict(described) == system
     run = system.simulate(PULSE, free_vibration="1 s")

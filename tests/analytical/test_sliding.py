@@ -343,6 +343,8 @@ def test_system_survives_result_and_run_continues(tmp_path):
     checked = standing(SLENDER, 0.26, sliding="checked")
     assert rf.System.from_dict(checked.to_dict()) == checked
     assert "sliding='checked'" in repr(checked)
-    whole = system.simulate(noise(), free_vibration="1 s", accuracy="reference")
-    rest = system.simulate(initial=run, duration="1 s", accuracy="reference")
-    assert float(rest.residual_slip) == pytest.approx(float(whole.residual_slip), abs=1e-9)
+    continuous = system.simulate(noise(), free_vibration="1 s", accuracy="reference")
+    continued = system.simulate(initial=run, duration="1 s", accuracy="reference")
+    assert float(continued.residual_slip) == pytest.approx(
+        float(continuous.residual_slip), abs=1e-9
+    )

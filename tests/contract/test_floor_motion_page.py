@@ -59,6 +59,6 @@ def test_the_museum_case(monkeypatch, tmp_path, capsys):
     fates = ["Overturned" in line for line in lines if line.startswith("  on ")]
     assert fates == [False, False, False, True, True, True, True]
     assert "On the ground the case stays up; on floors 3, 4, 5 and 6 the same" in lines[8]
-    made = {path.name for path in tmp_path.iterdir()}
-    assert made == {"floor_motion.nc", "floor_motion.png", "case_on_floor_4.png"}
+    files = {path.name for path in tmp_path.iterdir()}
+    assert files == {"floor_motion.nc", "floor_motion.png", "case_on_floor_4.png"}
     assert len(rf.GroundMotion.read(tmp_path / "floor_motion.nc")) > 4000

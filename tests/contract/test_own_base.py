@@ -165,10 +165,10 @@ class TestDataset:
 
     def test_continued_run_starts_from_plastic_sets(self, system, response):
         first = system.simulate(PULSE, duration="1.5 s")
-        rest = system.simulate(initial=first, duration="1 s")
+        continued = system.simulate(initial=first, duration="1 s")
         for name in SETS:
-            assert rest[name].values[0] == first[name].values[-1] > 0.0
-            assert rest[name].values[-1] == pytest.approx(response[name].values[-1], rel=1e-9)
+            assert continued[name].values[0] == first[name].values[-1] > 0.0
+            assert continued[name].values[-1] == pytest.approx(response[name].values[-1], rel=1e-9)
 
 
 class TestLadder:
@@ -208,8 +208,8 @@ class TestMechanics:
     @pytest.fixture(autouse=True)
     def stacks_in_plain_python(self, request):
         """Run stacks in plain Python; the law of a single block is compiled."""
-        given = getattr(request.node, "callspec", None)
-        scene = "alone" if given is None else given.params.get("scene", "alone")
+        callspec = getattr(request.node, "callspec", None)
+        scene = "alone" if callspec is None else callspec.params.get("scene", "alone")
         with nullcontext() if scene == "alone" else plainly():
             yield
 
@@ -276,8 +276,8 @@ class TestMechanics:
         rounding = 0.0 if scene == "alone" else 1e-12
         one, other = (system.simulate(noise(sign), duration="1 s") for sign in (1.0, -1.0))
         exchanged = {
-            f"{side}_{what}": f"{opposite}_{what}"
-            for what in ("set", "reaction")
+            f"{side}_{quantity}": f"{opposite}_{quantity}"
+            for quantity in ("set", "reaction")
             for side, opposite in (("left", "right"), ("right", "left"))
         }
         turned = ("rotation", "horizontal_displacement", "base_shear")

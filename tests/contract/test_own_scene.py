@@ -144,9 +144,9 @@ class TestRun:
 
     def test_run_can_be_continued(self, system, response):
         first = system.simulate(PULSE)
-        rest = system.simulate(initial=first, duration="1 s")
-        assert float(rest.slip[0]) == float(first.slip[-1])
-        assert float(rest.slip[-1]) == pytest.approx(float(response.slip[-1]), rel=1e-9)
+        continued = system.simulate(initial=first, duration="1 s")
+        assert float(continued.slip[0]) == float(first.slip[-1])
+        assert float(continued.slip[-1]) == pytest.approx(float(response.slip[-1]), rel=1e-9)
 
     def test_outputs_none_leaves_out_own_variables(self, system):
         bare = system.simulate(PULSE, outputs=None)

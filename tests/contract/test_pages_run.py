@@ -43,7 +43,7 @@ def test_all_snippets_of_page_run(page, tmp_path, monkeypatch, capsys, request):
             shutil.copy(record_path(source), tmp_path / name)
     monkeypatch.chdir(tmp_path)
     names: dict[str, object] = {}
-    for language, snippet, shown in snippets:
+    for language, snippet, expected in snippets:
         capsys.readouterr()
         if language == "toml":
             named = FILE.match(snippet)
@@ -54,8 +54,8 @@ def test_all_snippets_of_page_run(page, tmp_path, monkeypatch, capsys, request):
             type_in(snippet, capsys, monkeypatch)
             continue
         exec(snippet, names)  # noqa: S102
-        if shown:
-            assert lines(capsys.readouterr().out) == lines(shown)
+        if expected:
+            assert lines(capsys.readouterr().out) == lines(expected)
 
 
 def lines(text):

@@ -38,10 +38,10 @@ def test_a_missing_folder_is_made(script, record, tmp_path):
 
 def test_invalid_folder_is_reported_before_simulation(script, record, capsys):
     assert script(record, "--folder", record) == 1
-    shown = capsys.readouterr()
-    assert shown.out == ""
-    assert shown.err.startswith("quickstart: ")
-    assert shown.err.count("\n") == 1
+    captured = capsys.readouterr()
+    assert captured.out == ""
+    assert captured.err.startswith("quickstart: ")
+    assert captured.err.count("\n") == 1
 
 
 def test_errors_are_one_line(script, record, tmp_path, capsys):

@@ -38,9 +38,9 @@ def test_peak_just_after_an_event_is_found():
     found = along([1.0, 1.0, 1.0, 1.0], {0: 0.5, 2: 7.0})
     (peak,), (time,) = found.largest(demand)
     assert (peak, time) == (7.0, 1.0)
-    first, lasted = found.above(lambda values: values["demand"], 4.0)
+    first, duration = found.above(lambda values: values["demand"], 4.0)
     assert first == 1.0
-    assert lasted == pytest.approx(0.5 * (7.0 - 4.0) / (7.0 - 1.0))
+    assert duration == pytest.approx(0.5 * (7.0 - 4.0) / (7.0 - 1.0))
 
 
 def test_peak_just_before_an_event_is_found():
@@ -64,14 +64,14 @@ def test_infinite_demand_is_interpolated_by_its_reciprocal():
     found = along([2.0, 0.0], {0: math.inf})
     (peak,), (time,) = found.largest(demand)
     assert (peak, time) == (math.inf, 0.0)
-    first, lasted = found.above(lambda values: values["demand"], 4.0)
-    assert (first, lasted) == (0.0, 0.25)  # 1/q from 0 to 1/2 passes 1/4 in the middle
+    first, duration = found.above(lambda values: values["demand"], 4.0)
+    assert (first, duration) == (0.0, 0.25)  # 1/q from 0 to 1/2 passes 1/4 in the middle
 
 
 def test_demand_never_above_limit_has_no_time():
-    first, lasted = along([1.0, 2.0], {0: 0.0}).above(lambda values: values["demand"], 2.0)
+    first, duration = along([1.0, 2.0], {0: 0.0}).above(lambda values: values["demand"], 2.0)
     assert math.isnan(first)
-    assert lasted == 0.0
+    assert duration == 0.0
 
 
 def test_first_of_equal_peaks_is_reported():

@@ -202,7 +202,7 @@ def test_measures_and_spectra_can_be_joined():
 def test_invalid_concat_arguments_are_refused(runs):
     one = runs[STANDS]
     joined = rf.concat([one, one], "scale", [1, 2])
-    for given, options, words in (
+    for unjoinable, options, words in (
         ([], {}, "found no runs"),
         (one, {}, "expected a list of datasets"),
         ("run.nc", {}, "expected a list of datasets"),
@@ -215,7 +215,7 @@ def test_invalid_concat_arguments_are_refused(runs):
         ([one, rf.measures.velocity_and_displacement(PULSE)], {}, "share no variables"),
     ):
         with pytest.raises(SchemaError, match=words):
-            rf.concat(given, **options)
+            rf.concat(unjoinable, **options)
 
 
 CABINET = rf.System(rf.Block(width="0.5 m", height="2 m", mass="300 kg"))
@@ -232,24 +232,24 @@ def sweep_of(widths, *pulses):
 def test_sweeps_differing_along_one_dimension_join_into_a_sweep(dim, tmp_path):
     if dim == "width":
         parts = [sweep_of([0.4, 0.5]), sweep_of([0.6])]
-        whole = sweep_of([0.4, 0.5, 0.6])
+        single_sweep = sweep_of([0.4, 0.5, 0.6])
     else:
         parts = [sweep_of([0.5], 1), sweep_of([0.5], 0.5, 2)]
-        whole = sweep_of([0.5], 1, 0.5, 2)
+        single_sweep = sweep_of([0.5], 1, 0.5, 2)
     joined = rf.concat(parts, dim)
-    assert joined.rockframe.verdict == whole.verdict
+    assert joined.rockframe.verdict == single_sweep.verdict
     assert joined.attrs["study_sha256"] not in [one.attrs["study_sha256"] for one in parts]
     for name in ("motion_names", "motions_json", "axes_json", "case_count", "system_json"):
-        assert joined.attrs[name] == whole.attrs[name]
+        assert joined.attrs[name] == single_sweep.attrs[name]
     last = {"width": 0.6} if dim == "width" else {"motion": "2 Hz"}
     case = rf.case(joined, scale=2.0, **last).simulate(outputs=None)
     assert case.peak_rotation.item() == joined.peak_rotation.sel(scale=2.0, **last).item()
     pooled = ["width"] if dim == "width" else []
-    found, same = (rf.fragility(one, "PGA", pooled=pooled) for one in (joined, whole))
+    found, same = (rf.fragility(one, "PGA", pooled=pooled) for one in (joined, single_sweep))
     np.testing.assert_array_equal(found.median_intensity, same.median_intensity)
     joined.to_netcdf(tmp_path / "joined.nc")
     with xr.open_dataset(tmp_path / "joined.nc") as again:
-        assert again.rockframe.verdict == whole.verdict
+        assert again.rockframe.verdict == single_sweep.verdict
 
 
 def test_sweeps_differing_otherwise_do_not_join_into_a_sweep():
@@ -299,11 +299,11 @@ def test_joined_sweeps_with_gaps_equal_the_whole_sweep(tmp_path):
         return rf.sweep(drums, PULSE, count=counts, **options)
 
     with plainly():
-        parts, whole = [swept(2), swept(3, 1)], swept(2, 3, 1)
+        parts, single_sweep = [swept(2), swept(3, 1)], swept(2, 3, 1)
     joined = rf.concat(parts, "count", histories=True)
     for name in ("overturned", "peak_body_slip", "peak_body_rotation", "rotation", "status"):
-        xr.testing.assert_identical(joined[name], whole[name])
-        flags = whole[name].attrs.get("flag_values", whole[name].values[:0])
+        xr.testing.assert_identical(joined[name], single_sweep[name])
+        flags = single_sweep[name].attrs.get("flag_values", single_sweep[name].values[:0])
         assert joined[name].attrs.get("flag_values", flags).dtype == flags.dtype
     assert np.isnan(joined.overturned[2, 0])  # a stack of one body is refused
     assert rf.case(joined, count=3, scene=drums).system == drums(3)

@@ -177,7 +177,7 @@ def test_cap_on_soft_soil_rotates_more_than_the_block():
 
 def test_overturning_energy_without_equilibrium_uses_the_reached_range(monkeypatch):
     setting = pedestal("0.5 m").assembly.setting
-    whole, held = setting.overturning_energy, type(setting).curve
+    energy, held = setting.overturning_energy, type(setting).curve
 
     def loses_equilibrium(self, rotations):
         far = 0.5 * setting.overturning_angle
@@ -186,7 +186,7 @@ def test_overturning_energy_without_equilibrium_uses_the_reached_range(monkeypat
 
     monkeypatch.setattr(type(setting), "curve", loses_equilibrium)
     on_the_way = pedestal("0.5 m").assembly.setting.overturning_energy
-    assert 0.5 * whole < on_the_way < whole
+    assert 0.5 * energy < on_the_way < energy
 
 
 @pytest.mark.filterwarnings("ignore::rockframe.errors.RockframeWarning")

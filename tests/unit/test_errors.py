@@ -74,12 +74,12 @@ OF_MANY_FAULTS = {
 @pytest.mark.parametrize("again", [lambda one: pickle.loads(pickle.dumps(one)), copy.copy])  # noqa: S301
 @pytest.mark.parametrize("kind", [getattr(errors, name) for name in dir(errors)])
 def test_errors_survive_pickling_and_copying(kind, again):
-    made = OF_MANY_FAULTS.get(kind, lambda: kind("out of range"))()
-    other = again(made)
+    error = OF_MANY_FAULTS.get(kind, lambda: kind("out of range"))()
+    other = again(error)
     assert type(other) is kind
-    assert str(other) == str(made)
-    assert other.args == made.args
-    assert vars(other) == vars(made)
+    assert str(other) == str(error)
+    assert other.args == error.args
+    assert vars(other) == vars(error)
 
 
 class Console:

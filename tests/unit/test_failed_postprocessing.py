@@ -52,8 +52,8 @@ def broken_property(name):
 def failing(request, monkeypatch):
     name = request.param
     if name in OF_CLASSES:
-        way = broken if name == "to_json" else broken_property(name)
-        monkeypatch.setattr(OF_CLASSES[name], name, way)
+        failure = broken if name == "to_json" else broken_property(name)
+        monkeypatch.setattr(OF_CLASSES[name], name, failure)
     else:
         monkeypatch.setattr(running, name, broken)
     return name

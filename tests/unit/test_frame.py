@@ -317,15 +317,15 @@ def test_mass_in_the_corners_has_the_least_shape_factor():
 
 
 def test_cutting_a_member_in_two_changes_nothing():
-    whole = FrameEquivalent.from_members([core(), tank()], **OUTLINE, depth="3 m")
+    uncut = FrameEquivalent.from_members([core(), tank()], **OUTLINE, depth="3 m")
     halves = [
         core(name="lower", mass="4 t", y="2 m", height="4 m"),
         core(name="upper", mass="6 t", y="7 m", height="6 m"),
         tank(),
     ]
     cut = FrameEquivalent.from_members(halves, **OUTLINE, depth="3 m")
-    assert cut.shape_factor == pytest.approx(whole.shape_factor, rel=1e-14)
-    assert cut.mass == whole.mass
+    assert cut.shape_factor == pytest.approx(uncut.shape_factor, rel=1e-14)
+    assert cut.mass == uncut.mass
 
 
 def test_small_building_matches_hand_calculation():

@@ -302,8 +302,8 @@ def fault_of_refusal(words, capsys):
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")
         code = main(words)
-    said = "".join(capsys.readouterr())
-    return code != 2 or "Traceback" in said or len(said) < 30
+    output = "".join(capsys.readouterr())
+    return code != 2 or "Traceback" in output or len(output) < 30
 
 
 def test_invalid_command_lines_are_refused(folder, capsys):

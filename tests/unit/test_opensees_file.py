@@ -33,7 +33,7 @@ class Recorder:
         self.calls = []
 
     def __getattr__(self, name):
-        return lambda *given: self.calls.append((name, *given))
+        return lambda *args: self.calls.append((name, *args))
 
     def of(self, name):
         return [call[1:] for call in self.calls if call[0] == name]

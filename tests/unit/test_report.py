@@ -70,7 +70,7 @@ def test_report_is_complete_and_self_contained(response, tmp_path):
     assert not {"script", "link", "iframe", "object"} & page.tags
     assert not re.search(r"url\(|@import", text)
     words = " ".join(page.text.split())
-    for said in (
+    for phrase in (
         "Tower & bell",
         response.attrs["verdict"],
         "Certificate: the verdict holds",
@@ -85,7 +85,7 @@ def test_report_is_complete_and_self_contained(response, tmp_path):
         response.attrs["motion_sha256"],
         f"rockframe {rf.__version__}",
     ):
-        assert said in words, said
+        assert phrase in words, phrase
     assert "springs of the bed" not in words  # there is no soil
 
 
@@ -321,9 +321,9 @@ def test_nested_parts_have_separate_tables():
 def test_report_contains_project_and_conclusion(response, tmp_path):
     path = rf.report(response, tmp_path / "r.html", certify=False, project=PROJECT)
     words = text_of_report(path)
-    for said in ("Object Bell <tower>", "Checked by C. Rossi", "Date 2026-11-24",
+    for phrase in ("Object Bell <tower>", "Checked by C. Rossi", "Date 2026-11-24",
                  "Conclusion It stands.", "Assumptions Sound masonry. A level floor."):  # fmt: skip
-        assert said in words, said
+        assert phrase in words, phrase
     assert path.read_text().count("<ol>") == 2  # assumptions and limitations
     for wrong, message in (
         ({"objekt": "x"}, "project has no entry 'objekt'; was 'object' meant?"),
@@ -429,13 +429,13 @@ def test_report_lists_the_worst_of_many_cases(tmp_path, monkeypatch):
 def test_every_analysis_has_a_report(tmp_path):
     system = rf.System(BLOCK, PADS)
     runs = rf.sweep(system, motions=SUITE, scale=[0.5, 1.0, 2.0])
-    for name, result, said in (
+    for name, result, phrase in (
         ("fragility", rf.fragility(runs, intensity="PGA"), "Limit states"),
         ("critical", rf.critical_scale(system, SUITE["long"], largest=3.0), "Figure"),
         ("joined", rf.concat([system.simulate(one) for one in SUITE.values()], "run"), "Cases"),
     ):
         words = text_of_report(rf.report(result, tmp_path / f"{name}.html"))
-        assert said in words, name
+        assert phrase in words, name
         assert "Provenance" in words
         assert "not described" not in words or name == "joined"
         assert "s^-" not in words.split("Scene")[0]  # powers are superscripts

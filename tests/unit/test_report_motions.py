@@ -23,9 +23,9 @@ KNOWN = {"event": "Irpinia <1980>", "station": "Sturno", "component": "N270", "m
 
 def record(seed):
     """Return a sampled motion with some metadata."""
-    made = rf.GroundMotion.stochastic(6.5, "15 km", seed=seed).window("4 s", "16 s")
+    motion = rf.GroundMotion.stochastic(6.5, "15 km", seed=seed).window("4 s", "16 s")
     known = {} if seed == 0 else {**KNOWN, "station": f"Sturno {seed}"}
-    return rf.GroundMotion(made.si, name=f"record {seed}", metadata=known)
+    return rf.GroundMotion(motion.si, name=f"record {seed}", metadata=known)
 
 
 @pytest.fixture(scope="module")
@@ -140,9 +140,9 @@ def test_records_of_a_reopened_study_can_be_passed_to_the_report(suite, tmp_path
     assert re.search("The worst case Not simulated again; .* must be given, as motions=", bare)
     assert "Scene Values of the scene from which the cases differ in: gravity." in bare
     assert "as motions= or, in a shell, by --motions." in bare
-    whole = text_of(rf.report(read, path, motions=suite))
-    assert "Compared at 40 periods" in whole
-    assert "The worst case in full" in whole
+    expected = text_of(rf.report(read, path, motions=suite))
+    assert "Compared at 40 periods" in expected
+    assert "The worst case in full" in expected
     few = text_of(rf.report(read, path, motions=suite.only(["record 2"])))
     assert "Sturno 2" in few
     assert "Sturno 3" not in few
@@ -179,9 +179,9 @@ def test_a_run_has_its_record_and_its_target(suite, tmp_path):
     path = rf.report(run, tmp_path / "r.html", motion=suite["record 3"], target=TARGET,
                      certify=False)  # fmt: skip
     words = text_of(path)
-    for said in ("Spectrum and target", "station Sturno 3", "component N270",
+    for phrase in ("Spectrum and target", "station Sturno 3", "component N270",
                  f"scale factor {suite['record 3'].metadata['scale_factor']:.4g}"):  # fmt: skip
-        assert said in words, said
+        assert phrase in words, phrase
 
 
 def test_report_of_joined_runs_accepts_motions(suite, tmp_path):

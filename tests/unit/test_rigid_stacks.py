@@ -84,29 +84,29 @@ def joint_uplift_acceleration(upper, lower) -> float:
     return GRAVITY * (one.mass + two.mass) * one.half_width / moment
 
 
-@pytest.mark.parametrize("way", [1.0, -1.0])
+@pytest.mark.parametrize("direction", [1.0, -1.0])
 @pytest.mark.parametrize(("upper", "lower", "first"), [(STATUE, PLINTH, 1), (HEAD, COLUMN, 2)])
-def test_first_uplift_of_a_two_body_stack_matches_closed_form(upper, lower, first, way):
+def test_first_uplift_of_a_two_body_stack_matches_closed_form(upper, lower, first, direction):
     alone = GRAVITY * upper.si.half_width / upper.si.half_height
     starts = alone if first == 1 else joint_uplift_acceleration(upper, lower)
     assert starts < (joint_uplift_acceleration(upper, lower) if first == 1 else alone)
     system = on_rigid(upper, lower)
     assert system.simulate(shaken(0.999 * starts), duration="0.5 s").sizes["event"] == 0
-    found = system.simulate(shaken(1.01 * way * starts), duration="0.35 s")
+    found = system.simulate(shaken(1.01 * direction * starts), duration="0.35 s")
     assert found.event_kind[0] == EventKind.UPLIFT
     assert found.event_body[0] == first
     # the ground moves to one side, the body to the other
     moved = found.body_rotation.to_numpy()[first - 1]
-    assert -way * moved[np.abs(moved) > 0.0][0] > 0.0
+    assert -direction * moved[np.abs(moved) > 0.0][0] > 0.0
     when = float(found.event_time[0])
     assert 1.01 * math.sin(2.0 * math.pi * when) == pytest.approx(1.0, abs=1e-6)
 
 
 def test_jointly_rocking_bodies_equal_one_block():
-    whole = rf.Block(width="0.5 m", height="3.4 m", mass="3.4 t")
+    united = rf.Block(width="0.5 m", height="3.4 m", mass="3.4 t")
     parts = [rf.Block(width="0.5 m", height="1.7 m", mass="1.7 t")] * 2
     motion = shaken(1.1 * GRAVITY * 0.5 / 3.4, 0.5)
-    one = rf.System(whole).simulate(motion, duration="2 s", accuracy="reference")
+    one = rf.System(united).simulate(motion, duration="2 s", accuracy="reference")
     both = on_rigid(*parts).simulate(motion, duration="2 s", accuracy="reference")
     until = float(one.event_time[1])  # they may separate at the first impact
     early = one.time < until

@@ -34,32 +34,32 @@ def run():
 
 
 def test_stack_attributes_and_round_trips():
-    made = rf.Stack(STATUE, PLINTH, interfaces=[JOINT], offsets=["2 cm"])
-    assert made.bodies == (STATUE, PLINTH)
-    assert made.interfaces == (JOINT,)
-    assert [one.to("cm").magnitude for one in made.offsets] == [2.0]
+    stack = rf.Stack(STATUE, PLINTH, interfaces=[JOINT], offsets=["2 cm"])
+    assert stack.bodies == (STATUE, PLINTH)
+    assert stack.interfaces == (JOINT,)
+    assert [one.to("cm").magnitude for one in stack.offsets] == [2.0]
     drums = (PLINTH, PLINTH, PLINTH)
     assert rf.Stack(*drums, interfaces=JOINT) == rf.Stack(*drums, interfaces=[JOINT, JOINT])
     with pytest.raises(UnitsError, match=r"offsets\[0\] needs a length with a unit"):
-        made.replace(offsets=([0.1], "m"))
-    assert rf.Stack.from_dict(made.to_dict()) == made
-    assert pickle.loads(pickle.dumps(made)) == made  # noqa: S301
-    assert made != STACK
-    assert len({made, STACK, rf.Stack(STATUE, PLINTH, interfaces=[JOINT])}) == 2
-    assert "offsets=['0.02 m']" in repr(made)
+        stack.replace(offsets=([0.1], "m"))
+    assert rf.Stack.from_dict(stack.to_dict()) == stack
+    assert pickle.loads(pickle.dumps(stack)) == stack  # noqa: S301
+    assert stack != STACK
+    assert len({stack, STACK, rf.Stack(STATUE, PLINTH, interfaces=[JOINT])}) == 2
+    assert "offsets=['0.02 m']" in repr(stack)
     with pytest.raises(AttributeError, match="immutable"):
-        made.bodies = ()
+        stack.bodies = ()
 
 
 def test_a_stack_is_changed_by_copying():
-    made = rf.Stack(STATUE, PLINTH, interfaces=[JOINT], offsets=["2 cm"])
-    assert made.replace() == made
-    assert made.replace(offsets=None) == STACK
-    assert made.replace(bodies=(STATUE, PLINTH.replace(mass="3 t"))).bodies[1] != PLINTH
+    stack = rf.Stack(STATUE, PLINTH, interfaces=[JOINT], offsets=["2 cm"])
+    assert stack.replace() == stack
+    assert stack.replace(offsets=None) == STACK
+    assert stack.replace(bodies=(STATUE, PLINTH.replace(mass="3 t"))).bodies[1] != PLINTH
     other = JOINT.replace(frequency_ratio=70)
-    assert made.replace(interfaces=[other]).interfaces == (other,)
+    assert stack.replace(interfaces=[other]).interfaces == (other,)
     with pytest.raises(TypeError, match="interface"):
-        made.replace(interface=[other])
+        stack.replace(interface=[other])
 
 
 @pytest.mark.parametrize(

@@ -93,8 +93,8 @@ def test_overturning_is_fitted_by_logistic_regression(base):
     x = np.log(found.strength.values)
     collapse = 1.0 / (1.0 + np.exp(-at[0] - at[1] * x))
     eta = (line.intercept + line.slope * x - math.log(0.3)) / found.residual_dispersion.item()
-    whole = collapse + (1.0 - collapse) * stats.norm.cdf(eta)
-    np.testing.assert_allclose(found.exceedance_probability.isel(limit_state=0), whole, rtol=1e-6)
+    total = collapse + (1.0 - collapse) * stats.norm.cdf(eta)
+    np.testing.assert_allclose(found.exceedance_probability.isel(limit_state=0), total, rtol=1e-6)
     np.testing.assert_allclose(
         found.exceedance_probability.isel(limit_state=1), collapse, rtol=1e-6
     )
@@ -126,8 +126,8 @@ def test_resting_runs_are_modelled_separately(base):
     x = np.log(found.strength.values)
     shares = [1.0 / (1.0 + np.exp(-a - b * x)) for a, b in (falls, moves)]
     eta = (line.intercept + line.slope * x - math.log(0.1)) / found.residual_dispersion.item()
-    whole = shares[0] + (1.0 - shares[0]) * shares[1] * stats.norm.cdf(eta)
-    np.testing.assert_allclose(found.exceedance_probability.isel(limit_state=0), whole, rtol=1e-6)
+    total = shares[0] + (1.0 - shares[0]) * shares[1] * stats.norm.cdf(eta)
+    np.testing.assert_allclose(found.exceedance_probability.isel(limit_state=0), total, rtol=1e-6)
     floored = rf.cloud_analysis(runs, "strength", limits=[0.1], least=0.1)
     assert int(floored.resting_count) == (response[~fell] < 0.1).sum()
 
@@ -246,8 +246,8 @@ def test_cloud_yields_annual_rates_and_writes_netcdf(base, tmp_path):
         1.0 + np.exp(-found.logistic_intercept.item() - found.logistic_slope.item() * np.log(x))
     )
     rate = np.exp(np.interp(np.log(x), np.log(hazard["intensity"][0]), np.log(hazard["rate"])))
-    whole = -(0.5 * (falls[1:] + falls[:-1]) * np.diff(rate)).sum()
-    assert rates.annual_rate[1].item() == pytest.approx(whole, rel=1e-3)
+    total = -(0.5 * (falls[1:] + falls[:-1]) * np.diff(rate)).sum()
+    assert rates.annual_rate[1].item() == pytest.approx(total, rel=1e-3)
     found.to_netcdf(tmp_path / "cloud.nc")
 
 

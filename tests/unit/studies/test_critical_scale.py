@@ -259,6 +259,6 @@ def test_interrupt_returns_completed_runs(monkeypatch):
     assert found.followed_scale <= found.scale.max()
     assert found.verdict.endswith("then interrupted.") or "interrupted. Beyond" in found.verdict
     monkeypatch.undo()
-    whole = rf.critical_scale(ON_PADS, PULSE, **options)
-    same = whole.sel(scale=found.scale)
+    complete = rf.critical_scale(ON_PADS, PULSE, **options)
+    same = complete.sel(scale=found.scale)
     np.testing.assert_array_equal(found.peak_rotation, same.peak_rotation)

@@ -83,12 +83,12 @@ def test_period_of_a_spectral_intensity_is_stored_and_labelled():
     measure = "pseudo_spectral_acceleration"
     intensity = {"intensity": measure, "period": "1.7 s"}
     suite = motions()
-    some = {"scale": [0.5, 1.5, 4.0], **FAST}
-    analysis = rf.incremental_dynamic_analysis(SYSTEM, suite, **intensity, **some)
+    scan = {"scale": [0.5, 1.5, 4.0], **FAST}
+    analysis = rf.incremental_dynamic_analysis(SYSTEM, suite, **intensity, **scan)
     critical = rf.critical_scale(SYSTEM, suite["seed 0"], scales=20, runs=30, **intensity, **QUIET)
     found = rf.fragility(analysis, "SA", period="1.7 s")
     pair = rf.fragility(analysis, ["PGA", "SA"], period="1.7 s")
-    spectrum = rf.overturning_spectrum(SYSTEM, suite, periods=(["1.7 s"]), **intensity, **some)
+    spectrum = rf.overturning_spectrum(SYSTEM, suite, periods=(["1.7 s"]), **intensity, **scan)
     for one in (analysis, critical, found, pair, spectrum):
         assert one.attrs["intensity_period"] == 1.7
     words = "pseudo spectral acceleration at 1.7 s"
@@ -102,7 +102,7 @@ def test_period_of_a_spectral_intensity_is_stored_and_labelled():
         rf.plot.fragility(pair)[0].get_ylabel(),
     ]
     assert axes == [f"{words} [m s$^{{-2}}$]"] * 5
-    plain = rf.incremental_dynamic_analysis(SYSTEM, suite, intensity="PGA", **some)
+    plain = rf.incremental_dynamic_analysis(SYSTEM, suite, intensity="PGA", **scan)
     assert "intensity_period" not in plain.attrs
     assert rf.plot.dynamic_analysis(plain)[0].get_ylabel().startswith("peak ground acceleration [")
 
@@ -174,8 +174,8 @@ def uninterrupted(resolution):
 )
 def test_interrupted_analysis_warns_and_resumes(tmp_path, monkeypatch, after, kind):
     # at a resolution of one brackets are narrowed at once
-    some = {"scale": [1.0, 2.0, 4.0], "resolution": 1.0 if after != 2 else 0.02, **FAST}
-    options = {**some, "store": tmp_path / "s"}
+    scan = {"scale": [1.0, 2.0, 4.0], "resolution": 1.0 if after != 2 else 0.02, **FAST}
+    options = {**scan, "store": tmp_path / "s"}
     run_study, rounds = of_lines.run_study, itertools.count()
 
     def cut(study, bar, **means):
@@ -200,7 +200,7 @@ def test_interrupted_analysis_warns_and_resumes(tmp_path, monkeypatch, after, ki
             found = rf.incremental_dynamic_analysis(SYSTEM, motions(), **options)
         rounds = itertools.count()
         with pytest.warns(SolverWarning, match="interrupted; brackets"):
-            spectrum = rf.overturning_spectrum(SYSTEM, motions(), periods=["1.7 s"], **some)
+            spectrum = rf.overturning_spectrum(SYSTEM, motions(), periods=["1.7 s"], **scan)
     assert found.verdict.endswith("; interrupted.")
     assert spectrum.verdict.endswith("; interrupted.")
     if after == 2:
@@ -209,9 +209,9 @@ def test_interrupted_analysis_warns_and_resumes(tmp_path, monkeypatch, after, ki
         apart = (found.scale_above - found.scale_below).max().item()
         rounds_made = after + (kind == "with the last case")
         assert apart == pytest.approx(2.0 / 2**rounds_made)
-    whole = rf.incremental_dynamic_analysis(SYSTEM, motions(), **options)
-    xr.testing.assert_identical(whole.drop_attrs(), uninterrupted(some["resolution"]))
-    assert "interrupted" not in whole.verdict
+    complete = rf.incremental_dynamic_analysis(SYSTEM, motions(), **options)
+    xr.testing.assert_identical(complete.drop_attrs(), uninterrupted(scan["resolution"]))
+    assert "interrupted" not in complete.verdict
 
 
 def test_verdict_of_one_motion_names_one_scale(analysis):

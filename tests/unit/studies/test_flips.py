@@ -184,8 +184,8 @@ def test_interrupted_scan_retains_completed_runs():
 
     look, tried = runs_of(peak)
     how = {"max_runs": 100, "width": 1e-4, "resolution": 0.05}
-    whole = scan_scales(look, ROW, **how)
-    assert whole.completed
+    complete = scan_scales(look, ROW, **how)
+    assert complete.completed
     for count in range(1, len(tried)):
         look, _ = runs_of(peak)
         left = iter([None] * count)
@@ -200,7 +200,7 @@ def test_interrupted_scan_retains_completed_runs():
         assert sorted(found.runs) == sorted(tried[:count])
         assert "interrupted" in flips_sentence(found, width=1e-4)
         # every flip of the complete analysis up to that scale lies in a bracket
-        for flip in whole.flips():
+        for flip in complete.flips():
             around = [one for one in found.flips() if one.below <= flip.below < one.above]
             assert flip.above > found.resolved_up_to or around
     with pytest.raises(KeyboardInterrupt):

@@ -146,8 +146,8 @@ def test_overturning_between_curve_points_is_counted():
 
 def test_omitted_runs_are_reported():
     runs = synthetic_runs([[0.1, 0.2, 0.3, 0.4, 0.5]] * 2, np.zeros((2, 5), dtype=bool))
-    whole = rf.fractile_curves(runs).attrs["verdict"]
+    total = rf.fractile_curves(runs).attrs["verdict"]
     status = runs["status"].copy()
     status[0, 2] = RunStatus.NOT_RUN
     verdict = rf.fractile_curves(runs.assign(status=status)).attrs["verdict"]
-    assert verdict == f"{whole} 1 of 10 runs is left out, without a verdict, intensity or response."
+    assert verdict == f"{total} 1 of 10 runs is left out, without a verdict, intensity or response."

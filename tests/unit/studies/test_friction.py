@@ -23,12 +23,12 @@ def messages_of(runs):
 
 def test_friction_warning_does_not_depend_on_histories():
     with pytest.warns(ModelWarning, match=f"{SLIDES} .* of 0.2, ") as caught:
-        whole = SLIPPERY.simulate(PULSE, free_vibration="3 s")
+        run = SLIPPERY.simulate(PULSE, free_vibration="3 s")
     with pytest.warns(ModelWarning, match=f"{SLIDES} .* of 0.2, ") as again:
         bare = SLIPPERY.simulate(PULSE, free_vibration="3 s", outputs=None)
     assert [str(one.message) for one in again] == [str(one.message) for one in caught]
-    assert bare.attrs["cautions"] == whole.attrs["cautions"]
-    assert bare.peak_friction_demand.item() == whole.peak_friction_demand.item()
+    assert bare.attrs["cautions"] == run.attrs["cautions"]
+    assert bare.peak_friction_demand.item() == run.peak_friction_demand.item()
     assert "time" not in bare.sizes
     without = rf.System(BLOCK).simulate(PULSE, free_vibration="3 s", outputs=None)
     assert "peak_friction_demand" not in without

@@ -155,9 +155,9 @@ def test_rate_bounds_are_rates_of_the_band_curves():
         band = curve[f"exceedance_probability_{end}_bound"].values
         x = np.geomspace(along[0], along[-1], 200_001)
         within = integrate.trapezoid(np.interp(x, along, band) * density(x), x)
-        whole = found[f"annual_rate_{end}_bound"].item()
+        total = found[f"annual_rate_{end}_bound"].item()
         # little lies beyond the plotted curve
-        assert whole == pytest.approx(within, rel=0.01)
+        assert total == pytest.approx(within, rel=0.01)
     assert found.annual_rate_lower_bound < found.annual_rate < found.annual_rate_upper_bound
 
 

@@ -55,25 +55,25 @@ def swept(motions=tuple(MOTIONS), scales=SCALES, heights=HEIGHTS, **run):
     "chunk", [7, *(pytest.param(size, marks=pytest.mark.long) for size in (1, 4, 1000))]
 )
 def test_a_study_is_extended_by_motions_and_values(tmp_path, cases_run, chunk):
-    whole = swept()
+    complete = swept()
     swept(("10", "weak"), [0.5, 1.0], HEIGHTS[::-1], store=tmp_path / "first")
     cases_run.clear()
     more = swept(store=tmp_path / "more", known=tmp_path / "first", chunk=chunk)
-    alike(more, whole)
+    alike(more, complete)
     assert len(cases_run) == len(set(cases_run)) == 60 - 2 * 2 * 3
     cases_run.clear()
-    alike(swept(store=tmp_path / "more", known=str(tmp_path / "first")), whole)
-    alike(swept(store=tmp_path / "more"), whole)  # independent of the first study
+    alike(swept(store=tmp_path / "more", known=str(tmp_path / "first")), complete)
+    alike(swept(store=tmp_path / "more"), complete)  # independent of the first study
     assert not cases_run
 
 
 def test_studies_are_combined(tmp_path, cases_run):
-    whole = swept()
+    complete = swept()
     swept(("a", "9"), store=tmp_path / "some")
     swept(("weak", "9", "10"), store=tmp_path / "others")
     cases_run.clear()
     parts = [tmp_path / "others", tmp_path / "some"]
-    alike(swept(store=tmp_path / "all", known=parts), whole)
+    alike(swept(store=tmp_path / "all", known=parts), complete)
     assert not cases_run
     few = swept(("9",), [2.0])  # too few for lanes, in which the stored ones were run
     alike(swept(("9",), [2.0], store=tmp_path / "one", known=parts), few, apart=["driver"])
@@ -83,12 +83,12 @@ def test_cases_missing_from_the_known_study_are_run(tmp_path, cases_run):
     settings = {"outputs": ["rotation"], "output_step": "0.02 s", "duration": "3 s",
             "points": {"top": ("0 m", "2 m")}, "accuracy": "standard"}  # fmt: skip
     heights = ["2 m", "3 m"]
-    whole = swept(heights=heights, **settings)
+    complete = swept(heights=heights, **settings)
     swept(("weak", "9"), heights=heights, store=tmp_path / "first", **settings)
     (tmp_path / "first" / "chunk-000001.arrays").unlink()
     cases_run.clear()
     more = swept(heights=heights, store=tmp_path / "more", known=tmp_path / "first", **settings)
-    alike(more, whole)
+    alike(more, complete)
     assert len(cases_run) == 20 + 4
 
 

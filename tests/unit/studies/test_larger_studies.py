@@ -71,10 +71,10 @@ def has_dask(request, monkeypatch):
     return request.param
 
 
-def assert_equal_lazily(lazy, whole):
+def assert_equal_lazily(lazy, in_memory):
     """Compare both, except that missing values make floats of other numbers."""
-    assert set(lazy.variables) == set(whole.variables)
-    for name, expected in whole.variables.items():
+    assert set(lazy.variables) == set(in_memory.variables)
+    for name, expected in in_memory.variables.items():
         found = lazy.variables[name]
         assert found.dims == expected.dims, name
         assert found.attrs["long_name"] == expected.attrs["long_name"]
@@ -92,14 +92,16 @@ def test_lazily_opened_study_equals_the_stored_one(run, tmp_path, has_dask, monk
     monkeypatch.setattr(lazy_dataset, "_BLOCK_SIZE", 1)
     counted, counts = [], words._counts
     monkeypatch.setattr(words, "_counts", lambda *a: counted.append(a[0].sizes) or counts(*a))
-    whole = run(accuracy="fast", store=tmp_path / "study")
+    in_memory = run(accuracy="fast", store=tmp_path / "study")
     lazy = rf.open_study(tmp_path / "study", lazy=True)
     assert (lazy.chunks != {}) == has_dask
-    assert_equal_lazily(lazy, whole)
-    attrs = {name: one for name, one in whole.attrs.items() if name not in ("verdict", "driver")}
+    assert_equal_lazily(lazy, in_memory)
+    attrs = {
+        name: one for name, one in in_memory.attrs.items() if name not in ("verdict", "driver")
+    }
     assert lazy.attrs == attrs
     counted.clear()
-    assert lazy.rockframe.verdict == whole.rockframe.verdict == whole.verdict
+    assert lazy.rockframe.verdict == in_memory.rockframe.verdict == in_memory.verdict
     assert len(counted) > 1 or run is screened  # read in parts
     rng = np.random.default_rng(1)
     for _ in range(20):  # any selection, along one dimension or along all
@@ -107,20 +109,20 @@ def test_lazily_opened_study_equals_the_stored_one(run, tmp_path, has_dask, monk
             dim: [rng.integers(-size, size).item(), rng.integers(-size, size, 3),
                   slice(*sorted(rng.integers(0, size + 1, 2).tolist())), slice(None, None, -1)]
             [rng.integers(4)]
-            for dim, size in whole.sizes.items()
+            for dim, size in in_memory.sizes.items()
             if rng.random() < 0.7
         }  # fmt: skip
-        assert_equal_lazily(lazy.isel(key), whole.isel(key))
+        assert_equal_lazily(lazy.isel(key), in_memory.isel(key))
     last = dict.fromkeys(lazy.status.dims, -1)
-    assert_equal_lazily(lazy.isel(last), whole.isel(last))
+    assert_equal_lazily(lazy.isel(last), in_memory.isel(last))
     first = {str(lazy.status.dims[0]): 0}
-    assert lazy.isel(first).rockframe.verdict == whole.isel(first).rockframe.verdict
-    assert len(rf.table(lazy)) == len(rf.table(whole))
+    assert lazy.isel(first).rockframe.verdict == in_memory.isel(first).rockframe.verdict
+    assert len(rf.table(lazy)) == len(rf.table(in_memory))
 
 
 @pytest.mark.filterwarnings("ignore::rockframe.errors.SolverWarning")
 def test_only_used_chunks_are_read(tmp_path, monkeypatch, has_dask):
-    whole = on_a_grid(store=tmp_path / "study")
+    in_memory = on_a_grid(store=tmp_path / "study")
     lazy_dataset._rows.cache_clear()
     read, plain = [], Store.get
     monkeypatch.setattr(Store, "get", lambda self, one: read.append(one.number) or plain(self, one))
@@ -128,7 +130,9 @@ def test_only_used_chunks_are_read(tmp_path, monkeypatch, has_dask):
     part = lazy.isel(motion=1, scale=0)
     assert lazy.sizes["height"] == 3
     assert not read
-    np.testing.assert_array_equal(part.peak_rotation, whole.isel(motion=1, scale=0).peak_rotation)
+    np.testing.assert_array_equal(
+        part.peak_rotation, in_memory.isel(motion=1, scale=0).peak_rotation
+    )
     # motions change slowest, so that neighbouring cases are those of a motion
     chunks = len(list((tmp_path / "study").glob("chunk-*")))
     assert 1 <= len(set(read)) <= (chunks if has_dask else 2)
@@ -140,10 +144,10 @@ def test_missing_chunks_appear_as_gaps(tmp_path, has_dask):
     on_a_grid(store=tmp_path / "study")
     (tmp_path / "study" / "chunk-000002.arrays").unlink()
     lazy_dataset._rows.cache_clear()
-    whole, lazy = (rf.open_study(tmp_path / "study", lazy=one) for one in (False, True))
-    assert_equal_lazily(lazy, whole)
+    in_memory, lazy = (rf.open_study(tmp_path / "study", lazy=one) for one in (False, True))
+    assert_equal_lazily(lazy, in_memory)
     assert int((lazy.status == RunStatus.NOT_RUN).sum()) == 7
-    assert lazy.rockframe.verdict == whole.verdict
+    assert lazy.rockframe.verdict == in_memory.verdict
     on_a_grid(store=tmp_path / "study")
     assert (
         lazy_dataset.lazy_dataset(Store.open(tmp_path / "study")).status.max() < RunStatus.NOT_RUN
@@ -174,8 +178,8 @@ def test_with_dask_statistics_stream(tmp_path, monkeypatch):
     dask = pytest.importorskip("dask", reason="dask is not installed")
     scales = np.linspace(0.05, 0.1, 200)
     few = {"scale": scales, "duration": "3 s", "output_step": "1 ms", "outputs": ["rotation"]}
-    whole = rf.sweep(SYSTEM, MOTIONS, **few, chunk=10, store=tmp_path / "study")
-    size = whole.rotation.nbytes
+    in_memory = rf.sweep(SYSTEM, MOTIONS, **few, chunk=10, store=tmp_path / "study")
+    size = in_memory.rotation.nbytes
     assert size > 1e7
     monkeypatch.setattr(lazy_dataset, "_BLOCK_SIZE", 10)
     lazy = rf.open_study(tmp_path / "study", lazy=True)
@@ -188,7 +192,7 @@ def test_with_dask_statistics_stream(tmp_path, monkeypatch):
         taken = tracemalloc.get_traced_memory()[1]
     finally:
         tracemalloc.stop()
-    assert found == np.abs(whole.rotation).max().item()
+    assert found == np.abs(in_memory.rotation).max().item()
     assert taken < 0.5 * size
     with dask.config.set(scheduler="synchronous"):
         # xarray would need the longest of all lazily read texts
@@ -212,7 +216,7 @@ def test_lazy_blocks_follow_the_execution_order(tmp_path):
 
 def test_study_larger_than_memory_is_read_from_its_store(tmp_path, monkeypatch):
     scales = np.linspace(0.1, 1, 100)
-    whole = rf.sweep(SYSTEM, MOTIONS["weak"], scale=scales, free_vibration="5 s")
+    in_memory = rf.sweep(SYSTEM, MOTIONS["weak"], scale=scales, free_vibration="5 s")
     monkeypatch.setattr(memory, "available_memory", lambda: 2e4)
     message = r"100 cases need about 0.058 MB of memory .* 0.02 MB are available; "
     with pytest.raises(StudyError, match=f"{message}run fewer cases or give a store, from which"):
@@ -221,14 +225,14 @@ def test_study_larger_than_memory_is_read_from_its_store(tmp_path, monkeypatch):
         runs = rf.sweep(
             SYSTEM, MOTIONS["weak"], scale=scales, free_vibration="5 s", store=tmp_path / "study"
         )
-    assert_equal_lazily(runs, whole)
+    assert_equal_lazily(runs, in_memory)
     assert "verdict" not in runs.attrs
-    assert runs.rockframe.verdict == whole.verdict
+    assert runs.rockframe.verdict == in_memory.verdict
     monkeypatch.undo()
     again = rf.sweep(
         SYSTEM, MOTIONS["weak"], scale=scales, free_vibration="5 s", store=tmp_path / "study"
     )
-    assert as_bytes(again) == as_bytes(whole)  # the same study, independent of available memory
+    assert as_bytes(again) == as_bytes(in_memory)  # the same study, independent of available memory
 
 
 def test_an_interrupted_study_that_does_not_fit_is_not_read(tmp_path, monkeypatch):

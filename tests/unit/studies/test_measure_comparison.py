@@ -56,8 +56,8 @@ def test_measures_are_compared_as_regressions_are(runs):
         # the t-test of the slope of the residuals, from its definition
         m = runs.magnitude.values[~fell] - runs.magnitude.values[~fell].mean()
         slope = (m @ residual) / (m @ m)
-        rest = residual - slope * m
-        error = math.sqrt((rest @ rest) / (len(m) - 2) / (m @ m))
+        remainder = residual - slope * m
+        error = math.sqrt((remainder @ remainder) / (len(m) - 2) / (m @ m))
         assert one.sufficiency_slope.item() == pytest.approx(slope, rel=1e-9)
         chance = 2.0 * stats.t.sf(abs(slope / error), len(m) - 2)
         assert one.sufficiency_p_value.item() == pytest.approx(chance, rel=1e-9)

@@ -62,9 +62,9 @@ ANALYSES = {
 )
 def test_one_bar_counts_all_rounds(name, bars, monkeypatch):
     ran = []
-    whole = execution._Bar.expect
+    expect = execution._Bar.expect
     monkeypatch.setattr(
-        execution._Bar, "expect", lambda bar, n, done=0: ran.append(n) or whole(bar, n, done)
+        execution._Bar, "expect", lambda bar, n, done=0: ran.append(n) or expect(bar, n, done)
     )
     ANALYSES[name](progress=True)
     (bar,) = bars

@@ -50,8 +50,8 @@ def test_broken_ties_are_counted_in_all_runs(broken, scale):
         verdict = alone.attrs["verdict"]
         assert verdict.count("broke") == (breaks > 0)
         assert ("west and east broke" in verdict) == (breaks == 2)
-    some = int((broken.broken_restrainer_count > 0).sum())
-    assert f"; in {some} a restrainer broke." in broken.attrs["verdict"]
+    cases_with_breaks = int((broken.broken_restrainer_count > 0).sum())
+    assert f"; in {cases_with_breaks} a restrainer broke." in broken.attrs["verdict"]
 
 
 def frame() -> rf.System:

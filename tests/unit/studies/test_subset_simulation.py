@@ -243,7 +243,7 @@ def test_cases_that_cannot_be_assembled_are_counted():
 
 @pytest.mark.wide
 def test_interrupted_subset_simulation_warns_and_resumes(tmp_path, monkeypatch):
-    whole = simulated(cases=200)
+    complete = simulated(cases=200)
     run = lines.run_study
     left = [14]
 
@@ -261,10 +261,10 @@ def test_interrupted_subset_simulation_warns_and_resumes(tmp_path, monkeypatch):
         assert np.isnan(part.exceedance_probability)
         assert part.sizes["sampling_level"] == 2
         bound = part.exceedance_probability_upper_bound.item()
-        assert whole.exceedance_probability.item() < bound < 1.0
+        assert complete.exceedance_probability.item() < bound < 1.0
         with pytest.raises(StudyError, match=r"interrupted at level 1$"):
             simulated(cases=200)
-    alike(simulated(cases=200, store=tmp_path / "study"), whole)
+    alike(simulated(cases=200, store=tmp_path / "study"), complete)
     assert (tmp_path / "study" / "level 02 step 01").is_dir()
 
 

@@ -256,8 +256,8 @@ def test_interrupt_returns_finished_cases():
     assert (runs.status[:12] == 0).all()
     assert (runs.status[12:] == RunStatus.NOT_RUN).all()
     assert runs.peak_rotation[12:].isnull().all()
-    whole = rf.sweep(SYSTEM, PULSE, scale=scales, **FAST)
-    np.testing.assert_array_equal(runs.peak_rotation[:12], whole.peak_rotation[:12])
+    complete = rf.sweep(SYSTEM, PULSE, scale=scales, **FAST)
+    np.testing.assert_array_equal(runs.peak_rotation[:12], complete.peak_rotation[:12])
 
 
 @pytest.mark.wide
@@ -416,8 +416,10 @@ def test_missing_cases_are_refused():
 
 def test_integrator_is_called_once_per_case(monkeypatch):
     calls = []
-    whole = of_a_run.integrate
-    monkeypatch.setattr(of_a_run, "integrate", lambda *a, **k: calls.append(1) or whole(*a, **k))
+    integrate = of_a_run.integrate
+    monkeypatch.setattr(
+        of_a_run, "integrate", lambda *a, **k: calls.append(1) or integrate(*a, **k)
+    )
     rf.sweep(SYSTEM, PULSE, scale=[0.5, 1.0], damping_ratio=[0.1, 0.2, 0.3], **FAST)
     assert len(calls) == 6
 

@@ -24,23 +24,23 @@ MARK = "ROCKFRAME_TEST_MARK"
 
 
 @pytest.fixture(scope="module")
-def whole(tmp_path_factory):
+def complete(tmp_path_factory):
     folder = tmp_path_factory.mktemp("whole") / "study"
     return folder, the_sweep(folder)
 
 
-def assert_part_of(part, whole):
+def assert_part_of(part, complete):
     """Check that the cases of a part equal those of the complete sweep; return their number."""
     done = part.status != RunStatus.NOT_RUN
     assert part.status.size == CASES
     for name in ("peak_rotation", "rotation"):
         if name in part:
-            np.testing.assert_array_equal(part[name].where(done), whole[name].where(done))
+            np.testing.assert_array_equal(part[name].where(done), complete[name].where(done))
     return int(done.sum())
 
 
 @pytest.mark.long
-def test_killed_sweep_resumes_to_identical_results(whole, tmp_path):
+def test_killed_sweep_resumes_to_identical_results(complete, tmp_path):
     folder, lost = tmp_path / "study", 0
     rng = random.Random(5)
     for _ in range(2):
@@ -51,11 +51,11 @@ def test_killed_sweep_resumes_to_identical_results(whole, tmp_path):
         time.sleep(rng.uniform(0.0, 0.15))
         running.kill()
         running.communicate()
-        lost += assert_part_of(rf.open_study(folder), whole[1]) < CASES
+        lost += assert_part_of(rf.open_study(folder), complete[1]) < CASES
     assert lost > 0
     runs = the_sweep(folder)
-    assert as_bytes(runs) == as_bytes(whole[1])
-    assert files(folder) == files(whole[0])
+    assert as_bytes(runs) == as_bytes(complete[1])
+    assert files(folder) == files(complete[0])
 
 
 def dying(height):
@@ -114,24 +114,24 @@ def disk(tmp_path):
     found.leave()
 
 
-def test_full_disk_preserves_written_chunks(disk, whole):
+def test_full_disk_preserves_written_chunks(disk, complete):
     folder = disk.place / "study"
     with pytest.raises(StudyError, match=r"cannot be written.*No space left"):
         the_sweep(folder)
-    assert 0 < assert_part_of(rf.open_study(folder), whole[1]) < CASES
+    assert 0 < assert_part_of(rf.open_study(folder), complete[1]) < CASES
     assert not list(folder.glob(".*"))
     assert disk.mount("10m", Disk.REMOUNT)  # with more room, the same call continues
-    assert as_bytes(the_sweep(folder)) == as_bytes(whole[1])
-    assert files(folder) == files(whole[0])
+    assert as_bytes(the_sweep(folder)) == as_bytes(complete[1])
+    assert files(folder) == files(complete[0])
 
 
-def test_file_size_limit_raises_like_a_full_disk(whole, tmp_path):
+def test_file_size_limit_raises_like_a_full_disk(complete, tmp_path):
     resource = pytest.importorskip("resource", reason="limits as of Unix")
     folder = tmp_path / "study"
     the_sweep(folder)
     for chunk in folder.glob("chunk-00001*"):
         chunk.unlink()
-    finished = assert_part_of(rf.open_study(folder), whole[1])
+    finished = assert_part_of(rf.open_study(folder), complete[1])
     assert finished == CASES - 30
     limits = resource.getrlimit(resource.RLIMIT_FSIZE)
     resource.setrlimit(resource.RLIMIT_FSIZE, (200, limits[1]))
@@ -140,11 +140,11 @@ def test_file_size_limit_raises_like_a_full_disk(whole, tmp_path):
             the_sweep(folder)
     finally:
         resource.setrlimit(resource.RLIMIT_FSIZE, limits)
-    assert assert_part_of(rf.open_study(folder), whole[1]) == finished
-    assert as_bytes(the_sweep(folder)) == as_bytes(whole[1])
+    assert assert_part_of(rf.open_study(folder), complete[1]) == finished
+    assert as_bytes(the_sweep(folder)) == as_bytes(complete[1])
 
 
-def test_a_folder_that_has_become_read_only_can_be_read(disk, whole):
+def test_a_folder_that_has_become_read_only_can_be_read(disk, complete):
     folder = disk.place / "study"
     assert disk.mount("10m", Disk.REMOUNT)
     the_sweep(folder)
@@ -159,7 +159,7 @@ def test_a_folder_that_has_become_read_only_can_be_read(disk, whole):
         the_sweep(folder, executor=executor)  # before anything runs
     with pytest.raises(StudyError, match=r"cannot be kept in .*Read-only file system"):
         rf.sweep(SYSTEM, PULSE, scale=[1.0], store=disk.place / "another")
-    assert assert_part_of(rf.open_study(folder), whole[1]) == CASES - 3
+    assert assert_part_of(rf.open_study(folder), complete[1]) == CASES - 3
 
 
 def test_pool_broken_on_submit_raises():

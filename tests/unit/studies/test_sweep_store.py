@@ -19,13 +19,13 @@ pytestmark = pytest.mark.filterwarnings("ignore::rockframe.errors.SolverWarning"
 
 
 @pytest.fixture(scope="module")
-def whole(tmp_path_factory):
+def complete(tmp_path_factory):
     folder = tmp_path_factory.mktemp("whole") / "study"
     return folder, the_sweep(folder)
 
 
-def test_stored_sweep_equals_sweep_in_memory(whole):
-    folder, runs = whole
+def test_stored_sweep_equals_sweep_in_memory(complete):
+    folder, runs = complete
     plain = the_sweep()
     assert as_bytes(runs) == as_bytes(plain)
     assert {**runs.attrs, "history": ""} == {**plain.attrs, "history": ""}
@@ -71,8 +71,8 @@ def test_store_can_be_read_while_the_sweep_runs(tmp_path):
     assert 0 < max(counts) < 12  # either of two threads may read first
 
 
-def test_case_is_restored_from_the_folder_alone(whole, monkeypatch):
-    folder, runs = whole
+def test_case_is_restored_from_the_folder_alone(complete, monkeypatch):
+    folder, runs = complete
     monkeypatch.setattr(of_cases, "_studies", type(of_cases._studies)())
     for place in (folder, runs):  # a sweep knows its folder
         found = rf.case(place, scale=SCALES[17], height="3.6 m", motion="noise")
@@ -114,10 +114,10 @@ def test_motions_with_vertical_component_survive_the_store(tmp_path, monkeypatch
 
 
 @pytest.fixture
-def copied(whole, tmp_path):
+def copied(complete, tmp_path):
     folder = tmp_path / "study"
     folder.mkdir()
-    for path in whole[0].iterdir():
+    for path in complete[0].iterdir():
         (folder / path.name).write_bytes(path.read_bytes())
     return folder
 
@@ -182,7 +182,7 @@ def test_other_formats_and_damaged_files_are_refused(copied):
         rf.open_study(copied)
 
 
-def test_damaged_labels_raise_and_are_rebuilt(copied, whole):
+def test_damaged_labels_raise_and_are_rebuilt(copied, complete):
     labels = copied / "labels.arrays"
     plain = labels.read_bytes()
     labels.write_bytes(plain[:-1])
@@ -192,11 +192,11 @@ def test_damaged_labels_raise_and_are_rebuilt(copied, whole):
     with pytest.raises(StudyError, match="another study"):
         the_sweep(copied, accuracy="fast")
     assert not labels.exists()
-    assert as_bytes(the_sweep(copied)) == as_bytes(whole[1])
+    assert as_bytes(the_sweep(copied)) == as_bytes(complete[1])
     assert labels.read_bytes() == plain
 
 
-def test_study_of_another_version_can_be_read_but_not_resumed(copied, whole):
+def test_study_of_another_version_can_be_read_but_not_resumed(copied, complete):
     head, last = copied / "study.json", copied / "chunk-000039.arrays"
     head.write_text(
         head.read_text().replace(
@@ -214,7 +214,7 @@ def test_study_of_another_version_can_be_read_but_not_resumed(copied, whole):
         assert found.attrs["source"].startswith("rockframe 0.0.9, ")
         finished = found.status != RunStatus.NOT_RUN
         assert int((~finished).sum()) == 3
-        expected = whole[1].peak_rotation.where(finished)
+        expected = complete[1].peak_rotation.where(finished)
         np.testing.assert_array_equal(found.peak_rotation, expected)
 
 

@@ -30,10 +30,10 @@ def test_subset_of_a_sweep_has_its_own_verdict(runs, tmp_path):
     assert runs.verdict == runs.rockframe.verdict == sentence
     runs.to_netcdf(tmp_path / "runs.nc")
     with xr.open_dataset(tmp_path / "runs.nc") as read:
-        for whole in (runs, read.load()):
+        for study in (runs, read.load()):
             for part in (
-                whole.isel(scale=[0, 1]), whole.sel(motion="strong"), whole.isel(scale=0, motion=1),
-                whole.sortby("scale", ascending=False).isel(scale=slice(0, 3)),
+                study.isel(scale=[0, 1]), study.sel(motion="strong"), study.isel(scale=0, motion=1),
+                study.sortby("scale", ascending=False).isel(scale=slice(0, 3)),
             ):  # fmt: skip
                 down = int(part.overturned.sum())
                 count = part.overturned.size

@@ -82,7 +82,7 @@ def assert_same_bits(lanes, alone):
         pytest.param((SOIL,), {}, marks=pytest.mark.long),
         pytest.param((PADS, CAP, SOIL), {}, marks=pytest.mark.long),
     ],
-    ids=lambda given: "-".join(str(one).split("(")[0] for one in given) or "none",
+    ids=lambda parts: "-".join(str(one).split("(")[0] for one in parts) or "none",
 )
 def test_lanes_reproduce_single_runs(monkeypatch, parts, options):
     check_scene(monkeypatch, "fast", parts, options)
@@ -98,7 +98,7 @@ def test_lanes_reproduce_single_runs(monkeypatch, parts, options):
         ((PADS,), {"rotation": "small"}),
         pytest.param((SOIL,), {}, marks=pytest.mark.long),
     ],
-    ids=lambda given: "-".join(str(one).split("(")[0] for one in given) or "none",
+    ids=lambda parts: "-".join(str(one).split("(")[0] for one in parts) or "none",
 )
 @pytest.mark.parametrize("rtol", [1e-4, 2e-8])
 def test_adaptive_lanes_reproduce_single_runs(monkeypatch, parts, options, rtol):
@@ -180,15 +180,15 @@ def test_lanes_do_not_depend_on_neighbours_chunks_or_executors(monkeypatch, chun
     def swept(**options):
         return rf.sweep(system, MOTIONS[:3], axes=axes, accuracy="fast", **options)
 
-    whole = swept(chunk=1000)
+    one_chunk = swept(chunk=1000)
     with ThreadPoolExecutor(8) as pool:
-        assert_same_bits(swept(chunk=chunk, executor=pool), whole)
+        assert_same_bits(swept(chunk=chunk, executor=pool), one_chunk)
     if chunk == 7:
         with ProcessPoolExecutor(2) as pool:
-            assert_same_bits(swept(chunk=chunk, executor=pool), whole)
+            assert_same_bits(swept(chunk=chunk, executor=pool), one_chunk)
     backwards = {"scale": axes["scale"][::-1], "damping_ratio": [0.2, 0.05]}
     other = rf.sweep(system, MOTIONS[:3], axes=backwards, accuracy="fast", chunk=chunk)
-    assert_same_bits(other.isel(scale=slice(None, None, -1), damping_ratio=[1, 0]), whole)
+    assert_same_bits(other.isel(scale=slice(None, None, -1), damping_ratio=[1, 0]), one_chunk)
 
 
 @pytest.mark.parametrize("accuracy", ["fast", "standard"])
