@@ -23,7 +23,7 @@ def motion(samples=NOISE, step=DT):
     return rf.GroundMotion.from_arrays((samples, "m/s^2"), f"{step!r} s")
 
 
-def close(found, expected, share):
+def assert_close(found, expected, share):
     np.testing.assert_allclose(found, expected, rtol=0.0, atol=share * np.abs(expected).max())
 
 
@@ -59,7 +59,7 @@ def test_single_mode_floor_matches_integrated_oscillator():
         floor = motion().through_storeys([f"{period} s"], damping, free_vibration="0.3 s")
         states = integrate(slope, 2, ground_at_samples(floor))
         expected = -2.0 * damping * omega * states[:, 1] - omega**2 * states[:, 0]
-        close(floor.si.horizontal.samples, expected, 1e-9)
+        assert_close(floor.si.horizontal.samples, expected, 1e-9)
 
 
 def test_three_storeys_of_masses_and_springs():
@@ -91,7 +91,7 @@ def test_three_storeys_of_masses_and_springs():
         if floor == 1:
             states = integrate(slope, 6, ground_at_samples(found))
         expected = np.array([relative(y)[floor - 1] for y in states])
-        close(found.si.horizontal.samples, expected, 1e-9)
+        assert_close(found.si.horizontal.samples, expected, 1e-9)
 
 
 def exact(ground, period, damping, dt=DT):
@@ -118,7 +118,7 @@ def test_floor_samples_match_exact_recurrence():
         for damping, share in ((0.0, 1e-12), (0.05, 1e-13), (1.0, 1e-13)):
             floor = motion().through_storeys([f"{period} s"], damping, free_vibration="1 s")
             expected = exact(ground_at_samples(floor), period, damping)
-            close(floor.si.horizontal.samples, expected, share)
+            assert_close(floor.si.horizontal.samples, expected, share)
 
 
 def test_finer_time_step_gives_same_floor_motion():
@@ -128,12 +128,12 @@ def test_finer_time_step_gives_same_floor_motion():
             ["0.15 s", "0.04 s"], floor_participations=[1.3, -0.4], time_step=step
         )
         assert fine.si.time_step == DT / parts
-        close(fine.si.horizontal.samples[::parts], coarse.si.horizontal.samples, 1e-13)
+        assert_close(fine.si.horizontal.samples[::parts], coarse.si.horizontal.samples, 1e-13)
     ground = ground_at_samples(coarse)
     expected = (
         0.1 * ground + 1.3 * exact(ground, 0.15, 0.05) - 0.4 * exact(ground, 0.04, 0.05)
     )  # fmt: skip
-    close(coarse.si.horizontal.samples, expected, 1e-13)
+    assert_close(coarse.si.horizontal.samples, expected, 1e-13)
 
 
 def test_a_harmonic_from_rest_in_closed_form():
@@ -151,7 +151,7 @@ def test_a_harmonic_from_rest_in_closed_form():
     u = s * np.sin(rate * time) + c * np.cos(rate * time) + free.real
     v = rate * (s * np.cos(rate * time) - c * np.sin(rate * time)) + (root * free).real
     assert abs(u[0]) + abs(v[0]) < 1e-15
-    close(floor.samples[: time.size], -2.0 * damping * omega * v - omega**2 * u, 1e-11)
+    assert_close(floor.samples[: time.size], -2.0 * damping * omega * v - omega**2 * u, 1e-11)
 
 
 def test_jump_of_pulse_is_resolved_exactly():
@@ -163,7 +163,7 @@ def test_jump_of_pulse_is_resolved_exactly():
     time = floor.times[:500]
     slow, omega = 0.02 * math.pi, 4.0 * math.pi
     u = -(np.cos(slow * time) - np.cos(omega * time)) / (omega**2 - slow**2)
-    close(floor.samples[:500], -(omega**2) * u, 1e-11)
+    assert_close(floor.samples[:500], -(omega**2) * u, 1e-11)
     assert floor.samples[250] == pytest.approx(2.0, rel=1e-3)
 
 
@@ -212,7 +212,7 @@ def test_stiff_floors_follow_ground_and_soft_floors_stand_still():
     smooth = np.convolve(NOISE, np.hanning(30), "full")
     for period, tolerance in (("0 s", 0.0), ("1e-5 s", 1e-4), ("0.001 s", 1e-2)):
         floor = motion(smooth).through_storeys([period], 0.05).si.horizontal.samples
-        close(floor, ground_at_samples(floor, smooth), tolerance)
+        assert_close(floor, ground_at_samples(floor, smooth), tolerance)
     peak = np.abs(smooth).max()
     for period in (1e3, 1e5):
         floor = motion(smooth).through_storeys([f"{period} s"], 0.0, free_vibration="0 s")
@@ -226,7 +226,7 @@ def test_floor_motion_is_linear_and_mirrored():
     one = motion().through_storeys(**building).si.horizontal.samples
     other = motion(NOISE[::-1]).through_storeys(**building).si.horizontal.samples
     both = motion(2.0 * NOISE - 0.5 * NOISE[::-1]).through_storeys(**building)
-    close(both.si.horizontal.samples, 2.0 * one - 0.5 * other, 1e-13)
+    assert_close(both.si.horizontal.samples, 2.0 * one - 0.5 * other, 1e-13)
     mirrored = motion(-NOISE).through_storeys(**building).si.horizontal.samples
     assert mirrored.tolist() == (-one).tolist()
 
@@ -246,7 +246,7 @@ def test_uniform_storeys_match_assembled_masses_and_stiffnesses():
                 floor=floor,
                 free_vibration="1 s",
             )
-            close(uniform.si.horizontal.samples, assembled.si.horizontal.samples, 1e-9)
+            assert_close(uniform.si.horizontal.samples, assembled.si.horizontal.samples, 1e-9)
 
 
 def test_truncated_modes_move_with_ground():

@@ -33,7 +33,7 @@ SCENES = {
     "coupled": rf.System(BLOCK, PADS, CAP, SOIL),
     "cascade": rf.System(BLOCK, PADS, CAP, SOIL, coupling="cascade"),
 }
-OF_SOME = {
+SCENE_VARIABLES = {
     "toe_pressure": ("soil", "one body", "coupled", "cascade"),
     "soil_friction_demand": ("coupled", "cascade"),  # other scenes have only one base
 }
@@ -57,7 +57,7 @@ def response(scene):
     )
 
 
-def twice(response, history):
+def second_derivative(response, history):
     """Differentiate a history twice where no event is near; NaN elsewhere, and at both ends."""
     time, events = response.time.values, np.unique(response.event_time.values)
     found = np.full(time.size, np.nan)
@@ -68,7 +68,7 @@ def twice(response, history):
     return found
 
 
-def agree(found, expected, share):
+def assert_close(found, expected, share):
     known = ~np.isnan(found)
     assert known.mean() > 0.5
     error = np.abs(found - expected)[known].max()
@@ -81,19 +81,21 @@ def test_accelerations_are_the_second_derivatives_of_displacements(response):
         ("horizontal_displacement", "horizontal_acceleration"),
         ("vertical_displacement", "vertical_acceleration"),
     ):
-        slope = twice(response, response[displacement].values)
-        agree(slope, response[acceleration].values, 1e-3)
+        slope = second_derivative(response, response[displacement].values)
+        assert_close(slope, response[acceleration].values, 1e-3)
 
 
 def test_points_move_with_the_body(response):
     for name in POINTS:
         point = response.sel(point=name)
-        for way, ground in (
+        for direction, ground in (
             ("horizontal", response.ground_acceleration),
             ("vertical", response.vertical_ground_acceleration),
         ):
-            slope = twice(response, point[f"point_{way}_displacement"].values)
-            agree(slope + ground.values, point[f"point_{way}_acceleration"].values, 1e-3)
+            slope = second_derivative(response, point[f"point_{direction}_displacement"].values)
+            assert_close(
+                slope + ground.values, point[f"point_{direction}_acceleration"].values, 1e-3
+            )
     # a rigid body: its corners stay as far apart as they are
     right, left = response.sel(point="right corner"), response.sel(point="left")
     wide = 2.0 * B + right.point_horizontal_displacement - left.point_horizontal_displacement
@@ -108,10 +110,10 @@ def test_bearing_corner_on_rigid_ground_does_not_move():
         bears = response.contact_state.values == state
         assert bears.any()
         corner = response.sel(point=name).isel(time=bears)
-        for way, ground in (("horizontal", ""), ("vertical", "vertical_")):
-            assert np.abs(corner[f"point_{way}_displacement"]).max() < 1e-14
+        for direction, ground in (("horizontal", ""), ("vertical", "vertical_")):
+            assert np.abs(corner[f"point_{direction}_displacement"]).max() < 1e-14
             np.testing.assert_allclose(
-                corner[f"point_{way}_acceleration"], corner[f"{ground}ground_acceleration"],
+                corner[f"point_{direction}_acceleration"], corner[f"{ground}ground_acceleration"],
                 atol=1e-12,
             )  # fmt: skip
 
@@ -302,7 +304,7 @@ def test_output_groups_return_only_requested_variables(scene):
 
 @pytest.mark.parametrize("name", ON_REQUEST)
 def test_single_output_can_be_requested_by_name(scene, name):
-    if scene not in OF_SOME.get(name, SCENES):
+    if scene not in SCENE_VARIABLES.get(name, SCENES):
         pytest.skip("the scene has no such thing")
     assert name in SCENES[scene].simulate(PULSE, duration="0.5 s", outputs=name)
 

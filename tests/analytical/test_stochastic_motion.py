@@ -293,31 +293,31 @@ def test_mean_peak_is_that_of_random_vibration_theory(magnitude, kilometres):
 
 
 @pytest.fixture(scope="module")
-def many():
+def many_motions():
     return [
         rf.GroundMotion.stochastic(6.0, "20 km", seed, source="one corner") for seed in range(200)
     ]
 
 
-def test_mean_peaks_are_those_of_smsim(many):
+def test_mean_peaks_are_those_of_smsim(many_motions):
     mean = {"acceleration": 0.0, "velocity": 0.0, "displacement": 0.0}
-    for motion in many:
+    for motion in many_motions:
         history = rf.measures.velocity_and_displacement(motion)
-        mean["acceleration"] += motion.si.peak / len(many)
-        mean["velocity"] += np.abs(history.ground_velocity.values).max() / len(many)
-        mean["displacement"] += np.abs(history.ground_displacement.values).max() / len(many)
+        mean["acceleration"] += motion.si.peak / len(many_motions)
+        mean["velocity"] += np.abs(history.ground_velocity.values).max() / len(many_motions)
+        mean["displacement"] += np.abs(history.ground_displacement.values).max() / len(many_motions)
     # its own random vibration theory has an error of some per cent
     assert mean["acceleration"] == pytest.approx(0.810, rel=0.05)
     assert mean["velocity"] == pytest.approx(0.0567, rel=0.06)
     assert mean["displacement"] == pytest.approx(0.0181, rel=0.10)
 
 
-def test_mean_response_spectrum_is_that_of_smsim(many):
+def test_mean_response_spectrum_is_that_of_smsim(many_motions):
     periods, printed = [0.05, 0.1, 0.2, 0.5], [1.291, 1.919, 1.897, 1.155]
     found = np.mean(
         [
             rf.response_spectrum(motion, (periods, "s")).pseudo_spectral_acceleration.values[0]
-            for motion in many[:100]
+            for motion in many_motions[:100]
         ],
         axis=0,
     )
@@ -349,8 +349,11 @@ def test_window_spends_its_energy_within_the_duration():
 
 
 @pytest.mark.long
-def test_significant_duration_is_that_of_the_model(many):
-    found = [rf.intensity_measures(motion).significant_duration_5_95.item() for motion in many[:60]]
+def test_significant_duration_is_that_of_the_model(many_motions):
+    found = [
+        rf.intensity_measures(motion).significant_duration_5_95.item()
+        for motion in many_motions[:60]
+    ]
     assert np.mean(found) == pytest.approx(SMSIM.duration, rel=0.1)
     assert 0.5 * SMSIM.duration < min(found)
     assert max(found) < 1.5 * SMSIM.duration

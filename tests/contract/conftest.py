@@ -13,11 +13,14 @@ def scene(request):
 
 
 # the other motions run in the long tests
-FEW = ("pulse and vertical", "record")
+SHORT_MOTIONS = ("pulse and vertical", "record")
 
 
 @pytest.fixture(
-    params=[name if name in FEW else pytest.param(name, marks=pytest.mark.long) for name in MOTIONS]
+    params=[
+        name if name in SHORT_MOTIONS else pytest.param(name, marks=pytest.mark.long)
+        for name in MOTIONS
+    ]
 )
 def motion_name(request):
     """Return the name of a motion in MOTIONS."""

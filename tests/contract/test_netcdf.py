@@ -15,7 +15,7 @@ from rockframe.errors import RecordWarning, RockframeError, SchemaError
 
 pytestmark = pytest.mark.contract
 
-WHEN = ("history",)
+TIMESTAMPS = ("history",)
 
 
 def through_file(dataset, folder, **options):
@@ -69,7 +69,7 @@ def system_reproduces_the_run(scene, motion_name, again):
     assert motion is not None
     assert motion.sha256 == MOTIONS[motion_name]().sha256
     rerun = system.simulate(motion, free_vibration="0.5 s", outputs="energy")
-    for attribute in WHEN:
+    for attribute in TIMESTAMPS:
         del rerun.attrs[attribute], again.attrs[attribute]
     for name in again.variables:
         np.testing.assert_array_equal(rerun[name].values, again[name].values, err_msg=name)

@@ -219,13 +219,13 @@ def test_invalid_concat_arguments_are_refused(runs):
 
 
 CABINET = rf.System(rf.Block(width="0.5 m", height="2 m", mass="300 kg"))
-SOME = {"free_vibration": "2 s", "scale": [0.5, 1.0, 2.0]}
+SWEEP_OPTIONS = {"free_vibration": "2 s", "scale": [0.5, 1.0, 2.0]}
 
 
 def sweep_of(widths, *pulses):
     """Sweep over widths, under pulses of given frequencies."""
     motions = {f"{f} Hz": rf.GroundMotion.sine_pulse("3 m/s^2", f"{f} Hz") for f in pulses or (1,)}
-    return rf.sweep(CABINET, motions, width=(widths, "m"), **SOME)
+    return rf.sweep(CABINET, motions, width=(widths, "m"), **SWEEP_OPTIONS)
 
 
 @pytest.mark.parametrize("dim", ["width", "motion"])
@@ -255,9 +255,9 @@ def test_sweeps_differing_along_one_dimension_join_into_a_sweep(dim, tmp_path):
 def test_sweeps_differing_otherwise_do_not_join_into_a_sweep():
     one = sweep_of([0.4, 0.5])
     pulse = {"1 Hz": rf.GroundMotion.sine_pulse("3 m/s^2", "1 Hz")}
-    worn = rf.sweep(CABINET, pulse, width=["0.4 m", "0.5 m"], restitution=[0.7], **SOME)
+    worn = rf.sweep(CABINET, pulse, width=["0.4 m", "0.5 m"], restitution=[0.7], **SWEEP_OPTIONS)
     worn = worn.isel(restitution=0, drop=True)
-    longer = rf.sweep(CABINET, pulse, width=["0.6 m"], **{**SOME, "free_vibration": "1 s"})
+    longer = rf.sweep(CABINET, pulse, width=["0.6 m"], **{**SWEEP_OPTIONS, "free_vibration": "1 s"})
     others = {
         "width": [sweep_of([0.5, 0.6]), longer],
         "base": [worn],

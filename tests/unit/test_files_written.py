@@ -274,7 +274,7 @@ def test_output_file_survives_closed_or_full_stdout(closed, folder):
 
 
 WRITES = {"write_text", "write_bytes", "to_netcdf", "to_csv", "savefig", "savetxt", "save"}
-THEMSELVES = {
+OWN_WRITERS = {
     "writing.py": "the mechanism",
     "studies/sweeps/store.py": "the folder of a study, whole or not at all by itself",
     "studies/sweeps/claims.py": "claims in that folder, which one job alone can make",
@@ -311,4 +311,4 @@ def test_only_known_modules_write_files():
             )
             if getattr(node.func, "attr", "") in WRITES or opens or trees:
                 found.add(file.relative_to(package).as_posix())
-    assert found == set(THEMSELVES)
+    assert found == set(OWN_WRITERS)

@@ -17,12 +17,17 @@ UNITS = {
     "length": "mm", "mass": "t", "angle": "deg", "angular_velocity": "deg/s", "velocity": "cm/s",
     "acceleration": "g", "force": "kN", "moment": "kN*m", "energy": "kJ", "stiffness": "kN/mm",
 }  # fmt: skip
-LEFT = ("s", "Hz", "N s m^-1", "kg m^2", "kg m^-3", "m^3")
+UNCHANGED = ("s", "Hz", "N s m^-1", "kg m^2", "kg m^-3", "m^3")
 """Units of which none is chosen, of those that begin with one of which one is."""
-SPELLED = [str(one) for one in Unit if one not in (*LEFT, "1")] + ["m/s^2", "m/s", "N/m", "rad/s"]
+SPELLED = [str(one) for one in Unit if one not in (*UNCHANGED, "1")] + [
+    "m/s^2",
+    "m/s",
+    "N/m",
+    "rad/s",
+]
 RAISED = str.maketrans("⁻⁰¹²³⁴⁵⁶⁷⁸⁹", "-0123456789")
 SI = re.compile(
-    rf"\d (?!(?:{'|'.join(map(re.escape, LEFT))}|N s/m)(?![\w^/]))"
+    rf"\d (?!(?:{'|'.join(map(re.escape, UNCHANGED))}|N s/m)(?![\w^/]))"
     rf"(?:{'|'.join(map(re.escape, sorted(SPELLED, key=len, reverse=True)))})(?![\w^/])"
 )
 BLOCK = rf.Block(width="0.6 m", height="2.4 m", mass="1 t")

@@ -148,10 +148,10 @@ def test_sweep_and_simulate_signatures_match_declarations():
     for name, one in declared_arguments(SweepArguments).items():
         assert of_sweep[name].default == one.default
     assert set(SWEEP_ARGUMENT_NAMES) < set(of_sweep)
-    of_run = inspect.signature(rf.System.simulate).parameters
+    run_arguments = inspect.signature(rf.System.simulate).parameters
     only_of_runs = {"self", "motion", "certify", "second_look"}
-    assert set(get_type_hints(RunArguments)) == set(of_run) - only_of_runs
-    assert all(of_run[name].default == DEFAULTS.get(name) for name in (*LENGTH, *COURSE))
+    assert set(get_type_hints(RunArguments)) == set(run_arguments) - only_of_runs
+    assert all(run_arguments[name].default == DEFAULTS.get(name) for name in (*LENGTH, *COURSE))
 
 
 def test_a_misspelt_argument_of_a_sweep_is_no_axis():

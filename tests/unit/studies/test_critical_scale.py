@@ -30,18 +30,18 @@ SHAKING = rf.GroundMotion.stochastic(6.5, "8 km", seed=4, source="one corner").s
     peak="3 m/s^2"
 )
 PULSE = rf.GroundMotion.sine_pulse("2 m/s^2", "1 Hz")
-SPARING = {"scales": 30, "runs": 60, "free_vibration": "3 s", "accuracy": "fast"}
+FEW_RUNS = {"scales": 30, "runs": 60, "free_vibration": "3 s", "accuracy": "fast"}
 CASES = {
-    "rigid ground": (RIGID, SHAKING, SPARING),
+    "rigid ground": (RIGID, SHAKING, FEW_RUNS),
     "pads, from a start": (
         ON_PADS,
         SHAKING,
-        {**SPARING, "initial": rf.InitialState(rotation="0.05 rad"), "accuracy": "standard"},
+        {**FEW_RUNS, "initial": rf.InitialState(rotation="0.05 rad"), "accuracy": "standard"},
     ),
-    "soil, a pulse": (ON_SOIL, PULSE, {**SPARING, "bracket_width": 1e-6}),
-    "pads, until it lies flat": (ON_PADS, PULSE, {**SPARING, "overturning": "continue"}),
+    "soil, a pulse": (ON_SOIL, PULSE, {**FEW_RUNS, "bracket_width": 1e-6}),
+    "pads, until it lies flat": (ON_PADS, PULSE, {**FEW_RUNS, "overturning": "continue"}),
 }
-OF_A_RUN = ("free_vibration", "initial", "accuracy", "overturning")
+RUN_OPTIONS = ("free_vibration", "initial", "accuracy", "overturning")
 
 
 MODULE = import_module("rockframe.studies.critical_scale")  # `rf` has the function by that name
@@ -65,7 +65,10 @@ def overturns(response):
 def test_bracket_ends_have_the_reported_verdicts(found):
     flips = 0
     for name, (system, motion, options) in CASES.items():
-        result, of_run = found[name], {key: options[key] for key in OF_A_RUN if key in options}
+        result, run_options = (
+            found[name],
+            {key: options[key] for key in RUN_OPTIONS if key in options},
+        )
         for below, above, falls in zip(
             result.scale_below.values, result.scale_above.values, result.overturns_above.values,
             strict=True,
@@ -73,7 +76,7 @@ def test_bracket_ends_have_the_reported_verdicts(found):
             assert above - below <= result.bracket_width * above
             for scale, expected in ((below, not falls), (above, falls)):
                 run = system.simulate(
-                    motion.scaled(scale), **of_run, outputs=None, second_look=False
+                    motion.scaled(scale), **run_options, outputs=None, second_look=False
                 )
                 assert overturns(run) == expected, (name, scale)
             flips += 1
@@ -84,14 +87,17 @@ def test_bracket_ends_have_the_reported_verdicts(found):
 
 def test_every_tried_scale_is_reported(found):
     for name, (system, motion, options) in CASES.items():
-        result, of_run = found[name], {key: options[key] for key in OF_A_RUN if key in options}
+        result, run_options = (
+            found[name],
+            {key: options[key] for key in RUN_OPTIONS if key in options},
+        )
         assert (np.diff(result.scale) > 0.0).all()
         assert result.scale[-1].item() == 4.0
         for k in range(0, result.scale.size, 9):
             scale = result.scale[k].item()
             with warnings.catch_warnings():  # runs near a flip warn
                 warnings.simplefilter("ignore", SolverWarning)
-                run = system.simulate(motion.scaled(scale), **of_run, outputs=None)
+                run = system.simulate(motion.scaled(scale), **run_options, outputs=None)
             assert result.outcome[k].item() == int(overturns(run)), (name, scale)
             assert result.peak_rotation[k].item() == run.peak_rotation.item()
             assert result.status[k].item() == run.status.item()
@@ -103,7 +109,7 @@ def test_every_tried_scale_is_reported(found):
 def test_a_mirrored_motion_gives_the_same_scales():
     for system in (RIGID, ON_PADS):
         one, other = (
-            rf.critical_scale(system, motion, **SPARING)
+            rf.critical_scale(system, motion, **FEW_RUNS)
             for motion in (SHAKING, SHAKING.scaled(-1.0))
         )
         xr.testing.assert_equal(one, other)
@@ -121,9 +127,9 @@ def test_critical_scale_search_starts_at_uplift_or_slip_scale(found):
             assert np.isnan(found[name].uplift_scale)
             assert found[name].scale[0].item() == 0.0
     leaning = rf.critical_scale(
-        RIGID, SHAKING, initial=rf.InitialState(rotation="0.01 rad"), **SPARING
+        RIGID, SHAKING, initial=rf.InitialState(rotation="0.01 rad"), **FEW_RUNS
     )
-    lifted = rf.critical_scale(RIGID, SHAKING.with_vertical(SHAKING.scaled(0.5)), **SPARING)
+    lifted = rf.critical_scale(RIGID, SHAKING.with_vertical(SHAKING.scaled(0.5)), **FEW_RUNS)
     assert np.isnan([leaning.uplift_scale, lifted.uplift_scale]).all()
     # or the scale of first slip, by the friction of the ground less its slope
     for friction, slope in ((0.1, 0.0), (9.0, 0.0), (0.1, 0.02), (0.1, 0.2)):
@@ -134,15 +140,15 @@ def test_critical_scale_search_starts_at_uplift_or_slip_scale(found):
         either = slides.setting.onset_accelerations
         assert min(either) == pytest.approx(9.80665 * least, rel=1e-12)
     slippery = rf.System(BLOCK, rf.RigidGround(friction=0.1))
-    slid = rf.critical_scale(slippery, SHAKING, **SPARING)
+    slid = rf.critical_scale(slippery, SHAKING, **FEW_RUNS)
     assert slid.uplift_scale.item() == pytest.approx(0.1 * 9.80665 / peak, rel=1e-12)
-    never = rf.critical_scale(RIGID, SHAKING, largest=0.5 * result.uplift_scale.item(), **SPARING)
+    never = rf.critical_scale(RIGID, SHAKING, largest=0.5 * result.uplift_scale.item(), **FEW_RUNS)
     assert never.scale.size == 1
 
 
 def test_a_block_that_never_overturns_has_no_critical_scale():
     result = rf.critical_scale(
-        RIGID, PULSE, largest=1.0, intensity="peak_ground_acceleration", **SPARING
+        RIGID, PULSE, largest=1.0, intensity="peak_ground_acceleration", **FEW_RUNS
     )
     assert np.isnan(result.critical_scale)
     assert np.isnan(result.peak_ground_acceleration)
@@ -153,14 +159,14 @@ def test_a_block_that_never_overturns_has_no_critical_scale():
 
 def test_block_overturning_without_motion_has_zero_critical_scale():
     start = rf.InitialState(angular_velocity="3 rad/s")
-    result = rf.critical_scale(ON_PADS, PULSE, initial=start, **SPARING)
+    result = rf.critical_scale(ON_PADS, PULSE, initial=start, **FEW_RUNS)
     assert result.critical_scale.item() == 0.0
     assert result.verdict.startswith("Overturns without the motion")
 
 
 def test_unfinished_runs_have_no_verdict():
     limit = rf.Accuracy(rtol=1e-6, max_steps=400)
-    options = {**SPARING, "accuracy": limit, "scales": 20, "runs": 20}
+    options = {**FEW_RUNS, "accuracy": limit, "scales": 20, "runs": 20}
     with pytest.warns(SolverWarning, match="could not be finished") as caught:
         result = rf.critical_scale(RIGID, SHAKING, **options)
     assert caught[0].filename == __file__

@@ -12,7 +12,7 @@ SUITE = {
     f"seed {k}": rf.GroundMotion.stochastic(6.5, "8 km", seed=k).window("8 s", "20 s")
     for k in range(3)
 }
-HOW = {
+OPTIONS = {
     "scale": [2.0, 4.0, 8.0], "limits": ["uplift", 0.4], "free_vibration": "2 s",
     "accuracy": "fast", "resolution": 0.2, "bracket_width": 0.01,
 }  # fmt: skip
@@ -23,7 +23,7 @@ LINES = ("capacity_scale", "capacity_resolution", "flip_count")
 def wide():
     """Return an analysis over two widths."""
     return rf.incremental_dynamic_analysis(
-        SYSTEM, SUITE, width=["0.5 m", "0.7 m"], restitution=[0.75, 0.8], intensity="PGA", **HOW
+        SYSTEM, SUITE, width=["0.5 m", "0.7 m"], restitution=[0.75, 0.8], intensity="PGA", **OPTIONS
     )
 
 
@@ -32,7 +32,7 @@ def single_analysis(width: str, restitution: float) -> xr.Dataset:
     system = rf.System(
         rf.Block(width=width, height="2 m", mass="300 kg"), rf.RigidGround(restitution=restitution)
     )
-    return rf.incremental_dynamic_analysis(system, SUITE, intensity="PGA", **HOW)
+    return rf.incremental_dynamic_analysis(system, SUITE, intensity="PGA", **OPTIONS)
 
 
 def test_each_structure_has_the_capacities_of_a_separate_analysis(wide):
@@ -100,7 +100,12 @@ def test_the_system_may_be_a_function_of_the_axes(wide):
         return rf.System(block, ground)
 
     found = rf.incremental_dynamic_analysis(
-        cabinet, SUITE, axes={"width": ["0.5 m", "0.7 m"]}, kind=["worn", "new"], columns=[3], **HOW
+        cabinet,
+        SUITE,
+        axes={"width": ["0.5 m", "0.7 m"]},
+        kind=["worn", "new"],
+        columns=[3],
+        **OPTIONS,
     )
     assert found.capacity_scale.dims == ("limit_state", "width", "kind", "columns", "motion")
     np.testing.assert_array_equal(found.capacity_scale.squeeze(), wide.capacity_scale.squeeze())
@@ -109,7 +114,7 @@ def test_the_system_may_be_a_function_of_the_axes(wide):
 def test_study_of_axes_survives_store_and_netcdf(tmp_path, wide):
     axes = {"width": ["0.5 m", "0.7 m"], "restitution": [0.75, 0.8]}
     stored = rf.incremental_dynamic_analysis(
-        SYSTEM, SUITE, axes=axes, store=tmp_path / "kept", intensity="PGA", **HOW
+        SYSTEM, SUITE, axes=axes, store=tmp_path / "kept", intensity="PGA", **OPTIONS
     )
     xr.testing.assert_equal(stored.drop_vars("message"), wide.drop_vars("message"))
     stored.to_netcdf(tmp_path / "kept.nc")
@@ -135,7 +140,7 @@ def test_study_of_axes_survives_store_and_netcdf(tmp_path, wide):
 )
 def test_invalid_axes_are_refused(axes, match):
     with pytest.raises(StudyError, match=match):
-        rf.incremental_dynamic_analysis(SYSTEM, SUITE, **axes, **HOW)
+        rf.incremental_dynamic_analysis(SYSTEM, SUITE, **axes, **OPTIONS)
 
 
 def test_duplicate_axis_is_refused():

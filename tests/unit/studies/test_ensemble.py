@@ -10,7 +10,7 @@ from rockframe.studies.dynamic_analysis import verdict_of_analysis
 from rockframe.studies.probability import _with_probability, rank_parameters
 
 SYSTEM = rf.System(rf.Block(width="0.5 m", height="2 m", mass="400 kg"))
-HOW = {"free_vibration": "3 s", "progress": False}
+OPTIONS = {"free_vibration": "3 s", "progress": False}
 
 
 def motions(count=5):
@@ -25,7 +25,7 @@ def fail(runs, **place):
 
 
 def test_sweep_over_structures_needs_pooling():
-    runs = rf.sweep(SYSTEM, motions(), scale=[1.0, 2.0], width=["0.4 m", "0.5 m"], **HOW)
+    runs = rf.sweep(SYSTEM, motions(), scale=[1.0, 2.0], width=["0.4 m", "0.5 m"], **OPTIONS)
     with pytest.raises(ComponentError, match=r"over scale, width .*pooled=\('scale', 'width'\)"):
         rf.ensemble_statistics(runs)
     with pytest.raises(ComponentError, match="goes over scale beside motions"):
@@ -40,13 +40,13 @@ def test_sweep_over_structures_needs_pooling():
     bounds = [name for name in every if str(name).endswith("_bound")]
     # no confidence is needed if a fractile includes the whole ensemble
     assert all(every[name][:-1].isnull().all() for name in bounds)
-    table = rf.sweep(SYSTEM, motions(), cases={"width": ["0.4 m", "0.5 m"]}, **HOW)
+    table = rf.sweep(SYSTEM, motions(), cases={"width": ["0.4 m", "0.5 m"]}, **OPTIONS)
     with pytest.raises(ComponentError, match="over case"):
         rf.ensemble_statistics(table)
 
 
 def test_members_without_a_result_are_counted():
-    runs = rf.sweep(SYSTEM, motions(), scale=[2.0], **HOW)
+    runs = rf.sweep(SYSTEM, motions(), scale=[2.0], **OPTIONS)
     fail(runs, motion=1)
     found = rf.ensemble_statistics(runs)
     assert (found.member_count.item(), found.left_out_count.item()) == (4, 1)
@@ -55,7 +55,7 @@ def test_members_without_a_result_are_counted():
 
 def test_sample_verdict_reports_motions_and_omitted_cases():
     sample = rf.probability_of_overturning(
-        SYSTEM, motions(), cases=40, spread={"scale": ("uniform", 2.0, 8.0)}, **HOW
+        SYSTEM, motions(), cases=40, spread={"scale": ("uniform", 2.0, 8.0)}, **OPTIONS
     )
     assert "by 40 cases under these 5 motions" in sample.verdict
     assert "left out" not in sample.verdict
@@ -69,7 +69,7 @@ def test_sample_verdict_reports_motions_and_omitted_cases():
 
 @pytest.mark.long
 def test_a_dynamic_analysis_counts_runs_without_a_verdict():
-    analysis = rf.incremental_dynamic_analysis(SYSTEM, motions(3), scale=[1.0, 4.0, 9.0], **HOW)
+    analysis = rf.incremental_dynamic_analysis(SYSTEM, motions(3), scale=[1.0, 4.0, 9.0], **OPTIONS)
     assert "no verdict" not in analysis.verdict
     fail(analysis, motion=0, scale=slice(0, 2))
     assert "2 of 9 runs of the scan have no verdict" in verdict_of_analysis(analysis)
@@ -80,7 +80,7 @@ def test_map_masks_runs_without_a_verdict():
 
     found = rf.overturning_map(
         SYSTEM, rf.GroundMotion.sine_pulse, amplitude=([1, 6], "m/s^2"),
-        frequency=([1, 2], "Hz"), **HOW,
+        frequency=([1, 2], "Hz"), **OPTIONS,
     )  # fmt: skip
     images = {}
     for name in ("known", "failed"):
@@ -102,7 +102,7 @@ def test_a_spectrum_counts_runs_without_a_verdict(monkeypatch):
 
     def counted():
         return rf.overturning_spectrum(
-            SYSTEM, motions(1), periods=([2, 4], "s"), scale=[1.0, 2.0, 4.0], **HOW
+            SYSTEM, motions(1), periods=([2, 4], "s"), scale=[1.0, 2.0, 4.0], **OPTIONS
         ).left_out_count.values.tolist()
 
     assert counted() == [[[0], [0]]]

@@ -9,7 +9,7 @@ from rockframe.errors import ComponentError, SchemaError, StudyError
 from rockframe.results.variables.runs import RunStatus
 
 SYSTEM = rf.System(rf.Block(width="0.5 m", height="2 m", mass="400 kg"))
-HOW = {"accuracy": "fast", "free_vibration": "3 s", "progress": False}
+OPTIONS = {"accuracy": "fast", "free_vibration": "3 s", "progress": False}
 SCALES = [0.5, 1.0, 2.0, 3.0, 5.0, 8.0, 12.0]
 
 
@@ -20,7 +20,7 @@ def motions(first=0, count=6):
 
 @pytest.fixture(scope="module")
 def runs():
-    return rf.sweep(SYSTEM, motions(), scale=SCALES, width=["0.4 m", "0.5 m", "0.8 m"], **HOW)
+    return rf.sweep(SYSTEM, motions(), scale=SCALES, width=["0.4 m", "0.5 m", "0.8 m"], **OPTIONS)
 
 
 def fail(runs, **place):
@@ -73,7 +73,7 @@ def test_structures_are_pooled_on_request(runs):
 
 def test_equal_table_rows_belong_to_one_structure(runs):
     widths = ["0.4 m"] * len(SCALES) + ["0.8 m"] * len(SCALES)
-    table = rf.sweep(SYSTEM, motions(), cases={"width": widths, "scale": SCALES * 2}, **HOW)
+    table = rf.sweep(SYSTEM, motions(), cases={"width": widths, "scale": SCALES * 2}, **OPTIONS)
     found = rf.fragility(table, "PGV", limits=())
     assert found.case.values.tolist() == [0, len(SCALES)]
     assert found.width.values.tolist() == [0.4, 0.8]
@@ -83,7 +83,9 @@ def test_equal_table_rows_belong_to_one_structure(runs):
     assert turned.case.values.tolist() == [len(SCALES), 0]
     assert turned.width.values.tolist() == [0.8, 0.4]
     assert turned.median_intensity.values.tolist() == found.median_intensity.values[::-1].tolist()
-    apart = rf.sweep(SYSTEM, motions(), scale=SCALES, cases={"width": ["0.4 m", "0.8 m"]}, **HOW)
+    apart = rf.sweep(
+        SYSTEM, motions(), scale=SCALES, cases={"width": ["0.4 m", "0.8 m"]}, **OPTIONS
+    )
     assert_same_fit(rf.fragility(apart, "PGV", limits=()), found)
     both = rf.fragility(apart, "PGV", limits=(), pooled="width")
     assert both.trial_count.item() == apart.status.size
@@ -94,14 +96,14 @@ def test_equal_table_rows_belong_to_one_structure(runs):
 
 def test_dimensions_of_analyses_are_structures_or_motions():
     spectrum = rf.rocking_spectrum(
-        SYSTEM, motions(), periods=([2, 4, 6], "s"), slenderness=[3, 5], **HOW
+        SYSTEM, motions(), periods=([2, 4, 6], "s"), slenderness=[3, 5], **OPTIONS
     )
     found = rf.fragility(spectrum, limits=())
     assert found.median_intensity.dims == ("slenderness", "rocking_period", "limit_state")
     assert found.width.dims == ("slenderness", "rocking_period")
     pulses = rf.overturning_map(
         SYSTEM, rf.GroundMotion.sine_pulse, amplitude=([2, 4, 6], "m/s^2"),
-        frequency=([1, 2], "Hz"), **HOW,
+        frequency=([1, 2], "Hz"), **OPTIONS,
     )  # fmt: skip
     assert rf.fragility(pulses, limits=()).median_intensity.dims == ("limit_state",)
 
@@ -115,7 +117,7 @@ def test_axis_used_as_intensity_does_not_separate_structures(runs):
 
 def test_one_structure_per_run_is_refused():
     sample = rf.probability_of_overturning(
-        SYSTEM, motions(), cases=30, **HOW,
+        SYSTEM, motions(), cases=30, **OPTIONS,
         spread={"width": ("uniform", "0.4 m", "0.6 m"), "scale": ("uniform", 1.0, 8.0)},
     )  # fmt: skip
     with pytest.raises(ComponentError, match=r"pooled=\('width',\) takes all"):
@@ -124,7 +126,9 @@ def test_one_structure_per_run_is_refused():
 
 
 def test_concatenated_runs_and_sweeps_are_refused(runs):
-    one, other = (rf.sweep(SYSTEM, motions(first), scale=SCALES[:3], **HOW) for first in (0, 10))
+    one, other = (
+        rf.sweep(SYSTEM, motions(first), scale=SCALES[:3], **OPTIONS) for first in (0, 10)
+    )
     run = SYSTEM.simulate(motions()["seed 0"])
     joined = rf.concat([run, SYSTEM.simulate(motions()["seed 1"])], "motion")
     for dataset, kind, words in (
@@ -147,7 +151,7 @@ def test_concatenated_runs_and_sweeps_are_refused(runs):
     for twice in (("PGA", "PGA"), ("PGA", "peak_ground_acceleration")):
         with pytest.raises(ComponentError, match="are one, peak_ground_acceleration"):
             rf.fragility(one, twice)
-    both = rf.sweep(SYSTEM, {**motions(0), **motions(10)}, scale=SCALES[:3], **HOW)
+    both = rf.sweep(SYSTEM, {**motions(0), **motions(10)}, scale=SCALES[:3], **OPTIONS)
     assert_same_fit(rf.fragility(rf.concat([one, other], "motion")), rf.fragility(both))
     # parts joined along an axis of a sweep are one sweep; user-defined measures need no motions
     split = [runs.isel(scale=slice(0, 3)), runs.isel(scale=slice(3, None))]
@@ -171,7 +175,7 @@ def test_runs_without_a_verdict_are_counted(runs):
 def test_unknown_capacities_are_omitted():
     """A motion whose runs failed is not counted as withstood."""
     analysis = rf.incremental_dynamic_analysis(
-        SYSTEM, motions(count=12), scale=[1.0, 3.0, 6.0, 12.0], **HOW
+        SYSTEM, motions(count=12), scale=[1.0, 3.0, 6.0, 12.0], **OPTIONS
     )
     all_known = rf.fragility(analysis, trials="capacities")
     lacking = analysis.copy(deep=True)

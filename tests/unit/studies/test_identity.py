@@ -25,8 +25,8 @@ SYSTEM = rf.System(rf.Block(width="0.5 m", height="2 m", mass="400 kg"))
 OTHER = rf.System(rf.Block(width="0.5 m", height="2 m", mass="400 kg"), gravity="9.8 m/s^2")
 WEAK, STRONG = (rf.GroundMotion.sine_pulse(f"{size} m/s^2", "1 Hz") for size in (3, 9))
 MOTIONS = {"weak": WEAK, "strong": STRONG}
-TURNED = dict(reversed(MOTIONS.items()))
-KEPT = {
+REVERSED = dict(reversed(MOTIONS.items()))
+NEUTRAL = {
     "executor": "runs are the same, whoever makes them",
     "chunk": "a store keeps to the chunks that it was begun with",
     "progress": "a bar shows what is done",
@@ -46,7 +46,7 @@ SWEPT = {"scene": SYSTEM, "motions": MOTIONS, "scale": [1.0, 2.0], "accuracy": "
 SWEEP_CHANGES = {
     **RUN,
     "scene": OTHER,
-    "motions": TURNED,
+    "motions": REVERSED,
     "axes": {"height": ["1 m", "2 m"]},
     "cases": {"width": ["0.5 m"]},
     "points": {"top": ("0 m", "2 m")},
@@ -61,8 +61,8 @@ SWEEP_CHANGES = {
 """By arguments: another value, or what is asked for at first and then."""
 
 SIZES = {"system": SYSTEM, "motions": MOTIONS, "periods": ([2, 4], "s"), "slenderness": [3, 4]}
-OF_SIZES = {
-    "system": OTHER, "motions": TURNED, "periods": ([2, 5], "s"), "slenderness": [3, 5],
+SIZES_CHANGES = {
+    "system": OTHER, "motions": REVERSED, "periods": ([2, 5], "s"), "slenderness": [3, 5],
     "axes": {"gravity": ["9 m/s^2", "10 m/s^2"]},
     "more_axes": ({"gravity": ["9 m/s^2"]}, {"gravity": ["10 m/s^2"]}),
 }  # fmt: skip
@@ -72,7 +72,7 @@ CORRELATED = tuple(
     {"spread": SPREAD, "correlation": {("scale", "gravity"): size}} for size in (0.2, 0.8)
 )
 LINES = {"scale": [0.5, 2.0], "bracket_width": 0.05}
-OF_LINES = {
+LINES_CHANGES = {
     "scale": [0.5, 2.5],
     "bracket_width": 0.02,
     "resolution": 0.1,
@@ -82,7 +82,7 @@ OF_LINES = {
 ANALYSES = {
     "incremental_dynamic_analysis": (
         {"system": SYSTEM, "motions": MOTIONS, **LINES, "intensity": "PGA"},
-        {**RUN, **OF_LINES, "system": OTHER, "motions": TURNED, "limits": ["uplift", 0.5],
+        {**RUN, **LINES_CHANGES, "system": OTHER, "motions": REVERSED, "limits": ["uplift", 0.5],
          "axes": {"height": ["1 m", "2 m"]},
          "more_axes": ({"width": ["0.5 m"]}, {"width": ["0.6 m"]}),
          "points": {"top": ("0 m", "2 m")}, "outputs": ["rotation"],
@@ -95,19 +95,19 @@ ANALYSES = {
         {**RUN, "system": OTHER, "pulse": rf.GroundMotion.cosine_pulse, "bracket_width": 0.02,
          "amplitude": ([2, 4, 9], "m/s^2"), "frequency": ([0.8, 2], "Hz"), "impacts": 1},
     ),
-    "rocking_spectrum": (SIZES, {**RUN, **OF_SIZES}),
-    "overturning_spectrum": ({**SIZES, **LINES}, {**RUN, **OF_SIZES, **OF_LINES}),
+    "rocking_spectrum": (SIZES, {**RUN, **SIZES_CHANGES}),
+    "overturning_spectrum": ({**SIZES, **LINES}, {**RUN, **SIZES_CHANGES, **LINES_CHANGES}),
     "probability_of_overturning": (
         {"system": SYSTEM, "motions": MOTIONS, "spread": {"scale": ("lognormal", 1.5, 0.4)},
          "cases": 24},
-        {**RUN, "system": OTHER, "motions": TURNED, "spread": {"scale": ("lognormal", 1.6, 0.4)},
+        {**RUN, "system": OTHER, "motions": REVERSED, "spread": {"scale": ("lognormal", 1.6, 0.4)},
          "correlation": CORRELATED, "cases": 25, "sampling": "random",
          "seed": 1, "confidence": 0.9},
     ),
     "subset_simulation": (
         {"system": SYSTEM, "motions": MOTIONS, "spread": {"scale": ("lognormal", 0.9, 0.2)},
          "cases": 60, "levels": 2},
-        {**RUN, "system": OTHER, "motions": TURNED, "spread": {"scale": ("lognormal", 0.8, 0.2)},
+        {**RUN, "system": OTHER, "motions": REVERSED, "spread": {"scale": ("lognormal", 0.8, 0.2)},
          "correlation": CORRELATED, "limit": 0.5, "cases": 61, "share": 0.2, "levels": 3,
          "seed": 1, "confidence": 0.9, "points": {"top": ("0 m", "2 m")}},
     ),
@@ -119,8 +119,8 @@ ANALYSES = {
 }  # fmt: skip
 
 
-SEEN = ("overturning_map", "probability_of_overturning", "earthquake_sequences")
-"""Analyses of whose arguments of runs each is changed in every round of tests."""
+FULLY_TESTED = ("overturning_map", "probability_of_overturning", "earthquake_sequences")
+"""Analyses whose arguments of runs are all changed in the short tests."""
 
 
 def arguments_of(name):
@@ -129,9 +129,9 @@ def arguments_of(name):
 
 def test_every_study_argument_is_covered_by_these_tests():
     # tests/unit/studies/test_known_cases.py covers arguments that keep the numbers
-    assert set(SWEEP_CHANGES) | set(KEPT) | {"known"} == arguments_of("sweep")
+    assert set(SWEEP_CHANGES) | set(NEUTRAL) | {"known"} == arguments_of("sweep")
     for name, (_, changes) in ANALYSES.items():
-        assert set(changes) | set(KEPT) == arguments_of(name), name
+        assert set(changes) | set(NEUTRAL) == arguments_of(name), name
 
 
 def before_and_after(base, name, change):
@@ -163,7 +163,7 @@ def test_execution_options_do_not_change_the_study(tmp_path):
 
 
 @pytest.fixture(scope="module")
-def begun(tmp_path_factory):
+def started_store(tmp_path_factory):
     """Return a function that creates the store of an analysis, each only once."""
     made = {}
 
@@ -181,15 +181,17 @@ def begun(tmp_path_factory):
     ("analysis", "name"),
     [
         # arguments that all analyses pass to runs are read in one place
-        pytest.param(one, name, marks=[pytest.mark.long] * (name in RUN and one not in SEEN))
+        pytest.param(
+            one, name, marks=[pytest.mark.long] * (name in RUN and one not in FULLY_TESTED)
+        )
         for one, (_, changes) in ANALYSES.items()
         for name in changes
     ],
 )
-def test_store_never_returns_results_of_other_arguments(analysis, name, begun, tmp_path):
+def test_store_never_returns_results_of_other_arguments(analysis, name, started_store, tmp_path):
     base, changes = ANALYSES[analysis]
     before, after = before_and_after({"accuracy": "fast", **base}, name, changes[name])
-    begun(analysis, before, tmp_path / "study")
+    started_store(analysis, before, tmp_path / "study")
     try:
         stored = getattr(rf, analysis)(**after, store=tmp_path / "study")
     except StudyError as problem:

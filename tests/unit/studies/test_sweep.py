@@ -45,7 +45,7 @@ SHAKING = rf.GroundMotion.stochastic(6.0, "10 km", seed=4).window("0 s", "8 s")
 FAST = {"accuracy": "fast", "free_vibration": "1 s"}
 
 
-def same(one, other):
+def are_equal(one, other):
     """Return whether two sweeps are equal bit for bit, apart from the time of day."""
     one, other = one.copy(), other.copy()
     del one.attrs["history"], other.attrs["history"]
@@ -71,7 +71,7 @@ def example_sweep(**means):
 
 
 @pytest.fixture(scope="module")
-def plain():
+def reference_sweep():
     with (
         pytest.warns(SolverWarning, match="12 of 36 cases have no result"),
         ThreadPoolExecutor(1) as one,
@@ -97,39 +97,39 @@ POOLS = {
     ],
 )
 @pytest.mark.filterwarnings("ignore::rockframe.errors.SolverWarning")
-def test_cases_do_not_depend_on_chunks_or_executor(plain, who):
+def test_cases_do_not_depend_on_chunks_or_executor(reference_sweep, who):
     with POOLS[who]() as pool:
         for chunk in (7, 1000) if who == "two processes" else (1, 7, 1000):
-            assert same(example_sweep(chunk=chunk, executor=pool), plain)
+            assert are_equal(example_sweep(chunk=chunk, executor=pool), reference_sweep)
 
 
-def test_failed_cases_are_gaps_with_a_message(plain):
-    squat = plain.sel(height=0.3)
+def test_failed_cases_are_gaps_with_a_message(reference_sweep):
+    squat = reference_sweep.sel(height=0.3)
     assert (squat.status == RunStatus.REFUSED).all()
-    messages = plain.message
-    assert messages.dims == plain.status.dims
+    messages = reference_sweep.message
+    assert messages.dims == reference_sweep.status.dims
     assert all("cannot rock" in text for text in messages.sel(height=0.3).values.ravel())
     assert set(messages.sel(height=[3.0, 4.0]).values.ravel()) <= {"none", STILL_MOVING}
     for name in labelling.COMMON_SCALARS:
-        assert plain[name].dtype == np.float64
+        assert reference_sweep[name].dtype == np.float64
         assert squat[name].isnull().all()
-    rest = plain.sel(height=[3.0, 4.0])
+    rest = reference_sweep.sel(height=[3.0, 4.0])
     assert rest.overturned.notnull().all()
-    assert plain.attrs["verdict"].endswith("; 12 have no result.")
-    assert "12 have" in plain.attrs["verdict"]
+    assert reference_sweep.attrs["verdict"].endswith("; 12 have no result.")
+    assert "12 have" in reference_sweep.attrs["verdict"]
     with pytest.raises(AssemblyError, match="cannot rock"):
-        rf.case(plain, scale=1.0, frequency_ratio=10, height=0.3, motion="pulse")
+        rf.case(reference_sweep, scale=1.0, frequency_ratio=10, height=0.3, motion="pulse")
 
 
-def test_histories_share_a_time_axis(plain):
-    assert plain.rotation.dims == (*plain.status.dims, "time")
-    assert "angular_velocity" not in plain
-    np.testing.assert_array_equal(plain.time, np.arange(plain.time.size) * 0.05)
-    assert plain.time[-1].item() == pytest.approx(9.0)
+def test_histories_share_a_time_axis(reference_sweep):
+    assert reference_sweep.rotation.dims == (*reference_sweep.status.dims, "time")
+    assert "angular_velocity" not in reference_sweep
+    np.testing.assert_array_equal(reference_sweep.time, np.arange(reference_sweep.time.size) * 0.05)
+    assert reference_sweep.time[-1].item() == pytest.approx(9.0)
     for motion, end in (("pulse", 2.0), ("shaking", 9.0)):
-        case = rf.case(plain, scale=1.0, frequency_ratio=15, height=4.0, motion=motion)
+        case = rf.case(reference_sweep, scale=1.0, frequency_ratio=15, height=4.0, motion=motion)
         alone = case.simulate()
-        case = plain.sel(scale=1.0, frequency_ratio=15, height=4.0, motion=motion)
+        case = reference_sweep.sel(scale=1.0, frequency_ratio=15, height=4.0, motion=motion)
         assert alone.time[-1].item() == pytest.approx(end)
         for name in ("rotation", "contact_state"):
             np.testing.assert_array_equal(case[name][: alone.time.size], alone[name])
@@ -308,7 +308,7 @@ def test_dask_runs_it_too():
         runs = rf.sweep(
             SYSTEM, PULSE, scale=scales, executor=client.get_executor(), chunk=2, **FAST
         )
-    assert same(runs, rf.sweep(SYSTEM, PULSE, scale=scales, **FAST))
+    assert are_equal(runs, rf.sweep(SYSTEM, PULSE, scale=scales, **FAST))
 
 
 def test_a_bar_counts_the_cases(capsys):

@@ -58,7 +58,7 @@ def test_killed_sweep_resumes_to_identical_results(complete, tmp_path):
     assert files(folder) == files(complete[0])
 
 
-def dying(height):
+def scene_killed_once(height):
     """Return a scene; the first process of a pool that reaches the eighth one is killed."""
     mark, worker = Path(os.environ[MARK]), parent_process() is not None
     if worker and height.m_as("m") > HEIGHTS[0][7] - 0.01 and not mark.exists():
@@ -77,10 +77,10 @@ def test_killed_worker_loses_only_chunks_in_flight(tmp_path, monkeypatch):
         ProcessPoolExecutor(1, mp_context=get_context("spawn")) as pool,
         pytest.raises(StudyError, match=r"could not run a chunk: BrokenProcessPool.*have died"),
     ):
-        rf.sweep(dying, PULSE, executor=pool, store=folder, **arguments)
+        rf.sweep(scene_killed_once, PULSE, executor=pool, store=folder, **arguments)
     assert 0 < (rf.open_study(folder).status != RunStatus.NOT_RUN).sum() < 12
-    found = rf.sweep(dying, PULSE, store=folder, **arguments)
-    assert as_bytes(found) == as_bytes(rf.sweep(dying, PULSE, **arguments))
+    found = rf.sweep(scene_killed_once, PULSE, store=folder, **arguments)
+    assert as_bytes(found) == as_bytes(rf.sweep(scene_killed_once, PULSE, **arguments))
 
 
 class Disk:
@@ -169,4 +169,4 @@ def test_pool_broken_on_submit_raises():
             raise BrokenExecutor(msg)
 
     with Broken(1) as pool, pytest.raises(StudyError, match=r"BrokenExecutor: a child.*have died"):
-        rf.sweep(dying, PULSE, height=HEIGHTS, executor=pool)
+        rf.sweep(scene_killed_once, PULSE, height=HEIGHTS, executor=pool)

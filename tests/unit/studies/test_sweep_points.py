@@ -27,7 +27,7 @@ PEAKS = [
 FAST = {"accuracy": "fast", "free_vibration": "1 s"}
 SCALES = [0.3, 0.5, 1.5]
 
-SOME = ["point_vertical_acceleration", "rotation"]
+REQUESTED = ["point_vertical_acceleration", "rotation"]
 
 
 def case_alone(runs, **labels):
@@ -40,9 +40,9 @@ def case_alone(runs, **labels):
     [
         (ON_PADS, ()),
         (ON_GROUND, None),
-        (ON_GROUND, SOME),
+        (ON_GROUND, REQUESTED),
         pytest.param(ON_PADS, None, marks=pytest.mark.long),
-        pytest.param(ON_PADS, SOME, marks=pytest.mark.long),
+        pytest.param(ON_PADS, REQUESTED, marks=pytest.mark.long),
         pytest.param(ON_GROUND, (), marks=pytest.mark.long),
     ],
 )

@@ -51,7 +51,7 @@ def on(*parts, **options):
     return scene
 
 
-def both(monkeypatch, *arguments, accuracy="fast", **options):
+def run_both_ways(monkeypatch, *arguments, accuracy="fast", **options):
     """Run a sweep in lanes and without."""
     found = []
     monkeypatch.setattr(study, "COMPILING_SHARE", math.inf)
@@ -108,13 +108,15 @@ def test_adaptive_lanes_reproduce_single_runs(monkeypatch, parts, options, rtol)
 def test_lanes_reach_step_limit_like_single_runs(monkeypatch):
     system = rf.System(BLOCK, PADS)
     few = rf.Accuracy(rtol=1e-6, max_steps=700)
-    lanes, alone = both(monkeypatch, system, MOTIONS[:3], accuracy=few, scale=[0.2, 0.9, 1.6])
+    lanes, alone = run_both_ways(
+        monkeypatch, system, MOTIONS[:3], accuracy=few, scale=[0.2, 0.9, 1.6]
+    )
     assert_same_bits(lanes, alone)
     assert (alone.status == 3).any()
 
 
 def check_scene(monkeypatch, accuracy, parts, options):
-    lanes, alone = both(
+    lanes, alone = run_both_ways(
         monkeypatch, on(*parts, **options), MOTIONS, axes=SLENDER, scale=[0.3, 0.8, 1.5],
         free_vibration="0.7 s", accuracy=accuracy,
     )  # fmt: skip
@@ -129,7 +131,7 @@ def test_lanes_leave_peaks_inside_polynomials_to_the_driver(monkeypatch):
     block = rf.Block(width="1 m", height="4 m", mass="1 t")
     motion = rf.GroundMotion.sine_pulse("0.25 g", "1 Hz", 0.7)  # no sample lies at its peak
     scales = 1.0 + np.array([-1e-6, 1e-8, 1e-6, 1e-5])
-    lanes, alone = both(monkeypatch, rf.System(block), motion, scale=scales)
+    lanes, alone = run_both_ways(monkeypatch, rf.System(block), motion, scale=scales)
     assert_same_bits(lanes, alone)
     assert (lanes.impact_count.values.ravel() > 0).tolist() == [False, True, True, True]
 
@@ -137,7 +139,7 @@ def test_lanes_leave_peaks_inside_polynomials_to_the_driver(monkeypatch):
 @pytest.mark.parametrize("course", ["stop", "continue"])
 def test_lanes_continue_or_stop_after_overturning(monkeypatch, course):
     system = rf.System(BLOCK, PADS, gravity="9.81 m/s^2")
-    lanes, alone = both(
+    lanes, alone = run_both_ways(
         monkeypatch, system, MOTIONS[:2], scale=np.linspace(0.2, 3.0, 7), damping_ratio=[0.0, 0.3],
         overturning=course, initial=rf.InitialState(rotation="0.03 rad"),
     )  # fmt: skip
@@ -147,7 +149,7 @@ def test_lanes_continue_or_stop_after_overturning(monkeypatch, course):
 
 def test_failing_cases_have_the_same_reason_in_lanes(monkeypatch):
     system = rf.System(rf.Block(width="1.2 m", height="6 m", mass="20 t"), PADS)
-    lanes, alone = both(
+    lanes, alone = run_both_ways(
         monkeypatch, system, MOTIONS[:1], height=["0.5 m", "1.5 m", "6 m"], damping_ratio=[0.1, 50]
     )
     assert_same_bits(lanes, alone)
@@ -157,12 +159,12 @@ def test_failing_cases_have_the_same_reason_in_lanes(monkeypatch):
 
 def test_lanes_handle_still_ground_and_inclined_bases(monkeypatch):
     lean = rf.InitialState(rotation="0.05 rad")
-    lanes, alone = both(
+    lanes, alone = run_both_ways(
         monkeypatch, rf.System(BLOCK, PADS), initial=lean, duration="2 s", width=["0.7 m", "0.8 m"]
     )
     assert_same_bits(lanes, alone)
     system = rf.System(BLOCK, PADS)
-    lanes, alone = both(
+    lanes, alone = run_both_ways(
         monkeypatch, system, MOTIONS[0], inclination=["0 deg", "2 deg"], scale=[0.3, 0.6]
     )
     assert_same_bits(lanes, alone)
