@@ -1,4 +1,4 @@
-"""Blocks on inclined bases in horizontal and vertical axes, by SciPy: nothing is turned here.
+"""Reference solutions of blocks on inclined bases by SciPy, in horizontal and vertical axes.
 
 The ground's points, the corners and the centre of mass are vectors to the right and upwards;
 gravity acts downwards. Rotations are those of the block in space, clockwise.
@@ -19,17 +19,17 @@ REST = 1e-10
 
 @dataclass(frozen=True)
 class Stone:
-    """A block whose centre of mass stands `beside` the middle of its base."""
+    """A block whose centre of mass is at `offset` from the middle of its base."""
 
     half_width: float
     height: float  # of the centre of mass
     mass: float
     inertia: float  # about the centre of mass
-    beside: float = 0.0
+    offset: float = 0.0
 
-    def seen_from(self, point, rotation):
-        """Return the centre of mass as seen from a point of the base, in a rotated block."""
-        right, up = self.beside - point, self.height
+    def relative_to(self, point, rotation):
+        """Return the centre of mass relative to a point of the base, in a rotated block."""
+        right, up = self.offset - point, self.height
         s, c = math.sin(rotation), math.cos(rotation)
         return np.array([c * right + s * up, c * up - s * right])
 
@@ -40,27 +40,27 @@ def clockwise(arm, force):
 
 
 def rocking(stone, inclination, ground, end, times):
-    """Return rotations relative to the ground at some times, of a block that starts at rest.
+    """Return rotations relative to the ground, at given times, of a block that starts at rest.
 
     `ground(t)` is the acceleration of the ground, horizontal and vertical.
     """
-    level = -inclination  # the ground rises to the right: turned against the clock
+    level = -inclination  # the ground rises to the right: anticlockwise
     corners = {1: stone.half_width, -1: -stone.half_width}
-    theta = math.atan2(stone.half_width - abs(stone.beside), stone.height)
+    theta = math.atan2(stone.half_width - abs(stone.offset), stone.height)
 
     def load(time):
         return -stone.mass * (ground(time) + np.array([0.0, G]))
 
     def polar(side):
-        arm = stone.seen_from(corners[side], level)
+        arm = stone.relative_to(corners[side], level)
         return stone.inertia + stone.mass * (arm @ arm)
 
     def tipping(time, side):
-        """Moment about a corner at rest, to its side."""
-        return side * clockwise(stone.seen_from(corners[side], level), load(time))
+        """Return the moment about a corner at rest, towards its side."""
+        return side * clockwise(stone.relative_to(corners[side], level), load(time))
 
     def next_start(time):
-        """Return when a block at rest begins to tip, and to which side."""
+        """Return when and to which side a block at rest begins to uplift."""
         found = []
         for side in (1, -1):
             fine = np.arange(time, end, 1e-3)
@@ -79,7 +79,7 @@ def rocking(stone, inclination, ground, end, times):
         arm_inertia = polar(side)
 
         def slope(t, z, side=side, arm_inertia=arm_inertia):
-            return [z[1], clockwise(stone.seen_from(corners[side], z[0]), load(t)) / arm_inertia]
+            return [z[1], clockwise(stone.relative_to(corners[side], z[0]), load(t)) / arm_inertia]
 
         def landing(t, z, side=side):
             return side * (z[0] - level)
@@ -92,7 +92,7 @@ def rocking(stone, inclination, ground, end, times):
         time, state = run.t[-1], run.y[:, -1]
         if run.status != 1:
             break
-        old, new = (stone.seen_from(corners[s], level) for s in (side, -side))
+        old, new = (stone.relative_to(corners[s], level) for s in (side, -side))
         side = -side
         rate = state[1] * (stone.inertia + stone.mass * (old @ new)) / polar(side)
         restoring = -tipping(time, side) / polar(side)
@@ -105,7 +105,7 @@ def rocking(stone, inclination, ground, end, times):
 
 @dataclass(frozen=True)
 class OnPads:
-    """A block on two inclined pads, the middle of its base held along them."""
+    """A block on two inclined pads, with the middle of its base held along the slope."""
 
     stone: Stone
     inclination: float
@@ -114,30 +114,30 @@ class OnPads:
 
     @property
     def axes(self):
-        """Directions up the slope, and away from it."""
+        """Return the directions along the slope, upwards, and normal to it."""
         s, c = math.sin(self.inclination), math.cos(self.inclination)
         return np.array([c, s]), np.array([-s, c])
 
     def placed(self, place, velocity):
-        """Return corners and the middle of the base: seen from the centre of mass, and their rates.
+        """Return corners and middle of the base relative to the centre of mass, and their rates.
 
         `place` is that of the centre of mass on the unloaded pads, and the rotation in space.
         """
         stone = self.stone
         points = (-stone.half_width, stone.half_width, 0.0)
-        arms = [-stone.seen_from(point, place[2]) for point in points]
+        arms = [-stone.relative_to(point, place[2]) for point in points]
         # a clockwise rate turns (x, y) to (y, -x)
         turning = [velocity[:2] + velocity[2] * np.array([arm[1], -arm[0]]) for arm in arms]
         return arms, turning
 
     def pad(self, place, velocity, corner):
-        """Return how deep a corner stands in its pad, and how fast it rises."""
+        """Return the compression of a pad at a corner, and the rate at which the corner rises."""
         _, normal = self.axes
         arms, rates = self.placed(place, velocity)
         return -normal @ (place[:2] + arms[corner]), normal @ rates[corner]
 
     def pull(self, place, velocity, corner):
-        """Return the force of a pad that touches."""
+        """Return the force of a pad in contact."""
         depth, rate = self.pad(place, velocity, corner)
         return self.stiffness * depth - self.damping * rate
 
@@ -166,14 +166,14 @@ class OnPads:
         """Return where the block is at rest, both pads bearing."""
         along, _ = self.axes
 
-        def lack(place):
+        def residual(place):
             found = self.accelerations(0.0, place, np.zeros(3), (True, True),
                                        lambda t: np.zeros(2))  # fmt: skip
             held = along @ (place[:2] + self.placed(place, np.zeros(3))[0][2])
             return [found[1], found[2], held]
 
-        guess = np.array([*self.stone.seen_from(0.0, -self.inclination), -self.inclination])
-        return root(lack, guess, tol=1e-13).x
+        guess = np.array([*self.stone.relative_to(0.0, -self.inclination), -self.inclination])
+        return root(residual, guess, tol=1e-13).x
 
     def response(self, ground, end, times):
         """Return rotation, and displacements along and off the slope, from rest."""

@@ -1,4 +1,4 @@
-"""A block on two pads made to measure, with its constants worked out by hand."""
+"""A block on two pads of chosen ratios, with its constants computed by hand."""
 
 import math
 from dataclasses import dataclass

@@ -1,4 +1,4 @@
-"""A block on rigid ground made to measure, and what is read from its response."""
+"""A block of chosen slenderness on rigid ground, and quantities read from its response."""
 
 import itertools
 import math
@@ -31,7 +31,7 @@ def rigid_block(theta, restitution=None, rotation="finite", radius=RADIUS):
 
 
 def free(system, share, periods, **options):
-    """Let a block go from a share of its overturning angle, for p t = `periods`."""
+    """Release a block from a share of its overturning angle, for p t = `periods`."""
     theta = system.setting.overturning_angle
     return system.simulate(
         duration=f"{periods / P!r} s",

@@ -1,4 +1,4 @@
-"""A block on a Winkler bed made to measure, with its constants worked out by hand."""
+"""A block on a Winkler bed of chosen ratios, with its constants computed by hand."""
 
 import math
 from dataclasses import dataclass
@@ -83,17 +83,17 @@ class Bed:
 
 
 def at_rest(model, rotation, height):
-    """Return the mode and the state of a body that stands still, and its accelerations."""
+    """Return the mode and the state of a motionless body, and its accelerations."""
     mode, state, _ = model.initial(Start(rotation, 0.0, height, 0.0))
     return mode, state, accelerations(model, mode, state)
 
 
 def accelerations(model, mode, state):
-    """Call the equations of a model as plain Python; the ground stands still."""
+    """Evaluate the equations of a model in plain Python, on motionless ground."""
     system = model.system
     return np.array(system.accelerate(int(mode), state, STILL)[: system.coordinates()])
 
 
 def energies(model, mode, state):
-    """Kinetic, gravity and elastic energy, and elastic less that at rest, per unit mass."""
+    """Return kinetic, gravity and elastic energy, and elastic energy above rest, per unit mass."""
     return model.system.energies(int(mode), state)

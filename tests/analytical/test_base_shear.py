@@ -1,12 +1,12 @@
-"""The base shear is what accelerates what stands on the ground: Newton's second law.
+"""The base shear equals the rate of momentum of all bodies on the ground: Newton's second law.
 
-By another way than the equations of motion: displacements of a run with fine outputs are
+Independently of the equations of motion, displacements of a run with fine outputs are
 differentiated twice. The stencil has nine points, its error is of the eighth order of the
 output step. With steps of 1 ms and motions that change within some 10 ms (the vibrations of pads
 and soil) that is below 1e-8 of the accelerations. Rounding: displacements of some 0.1 m are
-known to 1e-17 m, their second difference over 1 ms to 1e-10 m/s^2; the outputs between steps are
+known to 1e-17 m, their second difference over 1 ms to 1e-10 m/s^2; outputs between steps are
 interpolated within the tolerance of 1e-10, from step to step, which adds some 1e-8. Samples whose
-stencil holds an event, or an end of the pulse, are left out: the accelerations jump there.
+stencil contains an event, or an end of the pulse, are omitted: the accelerations jump there.
 """
 
 import math
@@ -44,17 +44,17 @@ def run(*parts, motion=LIFTED, duration="2 s", block=BLOCK, **options):
 
 
 def acceleration(displacement):
-    """Differentiate twice; the first and last samples have none."""
+    """Differentiate twice, without the first and last samples."""
     return np.convolve(displacement, STENCIL, "valid") / STEP**2
 
 
 def inside(history):
-    """Return the samples that have an acceleration."""
+    """Return the samples at which accelerations are known."""
     return history.to_numpy()[SIDE:-SIDE]
 
 
 def is_smooth(response):
-    """Tell which of these samples have no event, nor an end of the pulse, in their stencil."""
+    """Return which of these samples have no event or end of the pulse in their stencil."""
     time, moves = inside(response.time), response.ground_acceleration.to_numpy() != 0.0
     end = response.time.to_numpy()[np.flatnonzero(moves)[-1] + 1]
     breaks = np.append(response.event_time.to_numpy(), [0.0, end])
@@ -62,7 +62,7 @@ def is_smooth(response):
 
 
 def assert_newton(response, force):
-    """Compare a force by differentiation with the base shear."""
+    """Compare a force from differentiation with the base shear."""
     shear, smooth = inside(response.base_shear), is_smooth(response)
     assert smooth.mean() > 0.9
     largest = np.abs(response.base_shear.to_numpy()).max()
@@ -71,7 +71,7 @@ def assert_newton(response, force):
 
 
 def force_on(response, mass):
-    """Return the force that moves one body, by its own horizontal displacement."""
+    """Return mass times horizontal acceleration of one body."""
     sway = acceleration(response.horizontal_displacement.to_numpy())
     return mass * (sway + inside(response.ground_acceleration))
 
@@ -105,7 +105,7 @@ def test_block_and_cap_as_one_body_on_soil():
 
 @pytest.mark.parametrize("rotation", ["finite", "small"])
 def test_coupled_stack_on_soil(rotation):
-    """The ground moves both: the cap's centre sways about the middle of its base."""
+    """Both bodies move with the ground, and the cap's centre sways about the middle of its base."""
     response = run(PADS, CAP, SOIL, restraint="centre", rotation=rotation)
     assert int(response.impact_count) > 0
     tilt = response.cap_rotation.to_numpy()
@@ -115,7 +115,7 @@ def test_coupled_stack_on_soil(rotation):
 
 
 def test_cascade_has_base_shear_of_its_first_stage():
-    """What stands on the ground is its first stage: block and cap as one body."""
+    """The first stage, block and cap as one body, stands on the ground."""
     response = run(PADS, CAP, SOIL, restraint="centre", coupling="cascade")
     both = BLOCK_MASS + CAP_MASS
     centre = (BLOCK_MASS * (CAP_HEIGHT + 4.8) + CAP_MASS * 0.5 * CAP_HEIGHT) / both
@@ -128,7 +128,7 @@ def test_cascade_has_base_shear_of_its_first_stage():
 
 
 def test_in_sliding_contact():
-    """A corner that touches without pressing: what holds it slips, and pushes all the same."""
+    """The corner touches without pressing: its contact slips and still transmits a force."""
     upwards = rf.GroundMotion.sine_pulse("5.65 m/s^2", "2 Hz")
     response = run(
         rf.TwoSpringSupport(frequency_ratio=27.27, damping_ratio=0.05),
@@ -136,7 +136,7 @@ def test_in_sliding_contact():
         motion=rf.GroundMotion.sine_pulse("-13.7 m/s^2", "2 Hz").with_vertical(upwards),
         restraint="centre",
     )
-    # under this rule the held point changes only where the slip of a corner has ended
+    # under this rule the held point changes only after the slip of a corner has ended
     (ends,) = np.flatnonzero(response.event_kind == int(EventKind.PIVOT_CHANGE))
     begin, end = response.event_time.to_numpy()[[ends - 1, ends]]
     assert end - begin > 0.05
@@ -166,7 +166,7 @@ def test_base_shear_vanishes_in_flight_over_pads(rule):
 
 
 def test_base_shear_vanishes_while_cap_flies_over_soil():
-    """But for rounding: the forces between block and cap are taken from each other."""
+    """Up to rounding, since forces between block and cap are subtracted."""
     upwards = rf.GroundMotion.sine_pulse("25 m/s^2", "3 Hz")
     motion = rf.GroundMotion.sine_pulse("-2 m/s^2", "3 Hz").with_vertical(upwards)
     response = run(PADS, CAP, SOIL, motion=motion, duration="1 s")
@@ -183,7 +183,7 @@ def test_base_shear_vanishes_at_rest(parts):
 
 
 def test_base_shear_of_resting_block_is_mass_times_ground_acceleration():
-    """Below tan(theta) times gravity a block stands still on rigid ground."""
+    """Below tan(theta) times gravity a block on rigid ground stays at rest."""
     response = run(motion=rf.GroundMotion.sine_pulse("2 m/s^2", "1 Hz"))
     assert not response.rotation.any()
     np.testing.assert_allclose(
@@ -192,7 +192,7 @@ def test_base_shear_of_resting_block_is_mass_times_ground_acceleration():
 
 
 def test_base_shear_on_pads_settles_under_constant_acceleration():
-    """The shear is then mass times acceleration, whatever the lean."""
+    """The shear is then mass times acceleration, independent of the rotation."""
     motion = rf.GroundMotion.from_arrays(([-1.0, -1.0], "m/s^2"), "20 s")
     quiet = rf.TwoSpringSupport(frequency_ratio=20, damping_ratio=1.0)
     response = rf.System(BLOCK, quiet).simulate(motion, output_step="0.1 s")

@@ -25,7 +25,7 @@ def make_bed(damping, by_pressure):
 
 
 def states(count, seed):
-    """Random heights and speeds of both ends: down, raised, grazing, level, all of these."""
+    """Return random heights and speeds of both ends: down, raised, grazing, level."""
     rng = np.random.default_rng(seed)
     special = [0.0, 1e-15, -1e-15, 1e-300, SETTLEMENT, 1e-9 * SETTLEMENT, -1e-9 * SETTLEMENT]
     for i in range(count):
@@ -43,7 +43,7 @@ def states(count, seed):
 
 
 def modes(ends):
-    """Return the states of the ends that belong to a state of the base."""
+    """Return the contact states of the ends for a state of the base."""
     return contact_of_end(ends.u_left), contact_of_end(ends.u_right)
 
 
@@ -53,19 +53,19 @@ def contact_of(ends):
 
 
 def line_of(ends, bed, lever_left=0.0, lever_right=0.0):
-    """Return the base line that presses the bed so."""
+    """Return the base line of these heights and speeds."""
     heights = bed.settlement - ends.u_left, bed.settlement - ends.u_right
     return BaseLine(*heights, ends.v_left, ends.v_right, lever_left, lever_right)
 
 
 def resultants(ends, bed, lever_left, lever_right):
-    """Return force, moment and power; heights count from the unloaded bed, to keep their digits."""
+    """Return force, moment and power; heights are relative to the unloaded bed, for precision."""
     bed = bed._replace(settlement=0.0)
     return bed.force(contact_of(ends), line_of(ends, bed, lever_left, lever_right), ())
 
 
 def by_quadrature(ends, bed, lever_left, lever_right):
-    """Integrate strip by strip between all places where something may begin or end."""
+    """Integrate piecewise between all points where contact may begin or end."""
     u = np.polynomial.Polynomial([ends.u_left, ends.u_right - ends.u_left])
     v = np.polynomial.Polynomial([ends.v_left, ends.v_right - ends.v_left])
     lever = np.polynomial.Polynomial([lever_left, lever_right - lever_left])
@@ -84,7 +84,7 @@ def by_quadrature(ends, bed, lever_left, lever_right):
         ds = 0.5 * (end - start) * WIDTH * WEIGHTS
         stored += np.sum(0.5 * bed.stiffness * u(s) ** 2 * ds)
         if bed.by_pressure and p(middle) <= 0.0:
-            # held back by its own dashpot, the spring relaxes: all it gives is dissipated
+            # the spring relaxes against its dashpot: all its power is dissipated
             dissipated += np.sum(bed.stiffness * u(s) * v(s) * ds)
             continue
         length += WIDTH * (end - start)
@@ -120,7 +120,7 @@ def test_resultants_are_exact(count, damping, by_pressure):
         assert abs(WIDTH * (end - start) - exact[4]) <= 1e-12 * WIDTH
         line = line_of(ends, bed)
         stored, change = bed.energy(line, ())
-        pressed = bed.ends(line)  # as far as the heights tell it
+        pressed = bed.ends(line)  # by the heights alone
         exact_energy = by_quadrature(pressed, bed, *levers)[3]
         energy = WIDTH * STIFFNESS * max(pressed.u_left**2, pressed.u_right**2)
         assert abs(stored - exact_energy) <= 1e-12 * energy
@@ -132,7 +132,7 @@ def test_resultants_are_exact(count, damping, by_pressure):
         deep = max(ends.u_left, ends.u_right) > 1e-6 * SETTLEMENT
         seen.add((*modes(ends), start == end and deep))
     assert {mode[:2] for mode in seen} == {(0, 0), (0, 1), (1, 0), (1, 1)}
-    # down without bearing: it rises faster than the bed can follow
+    # down without bearing: the end rises faster than the bed can follow
     tears = any(nothing for left, right, nothing in seen if not left or not right)
     assert tears == (by_pressure and damping > 0.0)
 
@@ -143,7 +143,7 @@ def test_bed_power_equals_stored_and_dissipated_power(damping, by_pressure):
     """dE/dt + dissipated + power on the base = 0; the springs' power by finite differences."""
     bed = make_bed(damping, by_pressure)
     for ends in states(1500, seed=2):
-        # the base's motion at its left and right end, as its middle's and a rotation's
+        # the motion of the left and right end, from middle and rotation
         force, moment, dissipated = resultants(ends, bed, 0.5 * WIDTH, -0.5 * WIDTH)
         rise = 0.5 * (ends.v_left + ends.v_right)
         spin = (ends.v_left - ends.v_right) / WIDTH
@@ -179,7 +179,7 @@ def shape(*, small):
 
 
 def body(alpha, y, spin, speed, *, small, damping=45.0, by_pressure=False):
-    """Return a model, its state and the mode that belongs to it."""
+    """Return a model, its state and the mode of the state."""
     block = shape(small=small)
     bed = bed_numbers(block, stiffness=STIFFNESS, damping=damping, by_pressure=by_pressure)
     model = single_body("Winkler", block, bed, mass=1.0)
@@ -188,7 +188,7 @@ def body(alpha, y, spin, speed, *, small, damping=45.0, by_pressure=False):
 
 
 def by_strips(model, state, alpha, small, *, by_pressure, damping):
-    """The acceleration of a body from pressures along its base, of the theory's definition."""
+    """Return the accelerations of a body from pressures along its base, by definition."""
     settlement = model.system.part.base.settlement
     sine, cosine = (alpha, 1.0) if small else (math.sin(alpha), math.cos(alpha))
     rise = HEIGHT * (0.5 * alpha**2 if small else 2.0 * math.sin(0.5 * alpha) ** 2)
@@ -249,7 +249,7 @@ def test_body_accelerations_follow_from_bed_pressure(alpha, by_pressure, small):
 
 
 def test_resultants_are_continuous_at_zero_rotation():
-    """No division by the rotation: nothing blows up, nothing jumps, from either side."""
+    """No division by the rotation: resultants are finite and continuous from either side."""
     bed = make_bed(45.0, by_pressure=False)
     for level in (SETTLEMENT, 0.1 * SETTLEMENT, 1e-12):
         base = resultants(Ends(level, level, 0.1, 0.1), bed, 1.3, -1.3)
@@ -369,7 +369,7 @@ COUNTS = np.array([10, 32, 100, 316, 1000, 3162])
 @pytest.mark.parametrize("by_pressure", SEPARATIONS)
 @pytest.mark.parametrize(("damping", "order"), [(0.0, 2), (45.0, 1)])
 def test_discrete_springs_converge_to_bed(damping, order, by_pressure):
-    """As 1/N^2 where the pressure ends in zero, as 1/N where dashpots make it end in a step."""
+    """As 1/N^2 where the pressure ends at zero, as 1/N where dashpots make it end in a step."""
     bed = make_bed(damping, by_pressure)
     levers = (1.3, -1.3)
     errors = np.zeros((len(COUNTS), 2))
@@ -387,7 +387,7 @@ def test_discrete_springs_converge_to_bed(damping, order, by_pressure):
 
 
 def test_discrete_springs_in_full_contact_differ_only_in_moment():
-    """The midpoint rule is exact for the force; of b^3/3 it misses the share 1/N^2."""
+    """The midpoint rule is exact for the force; it misses the share 1/N^2 of b^3/3."""
     bed = make_bed(45.0, by_pressure=False)
     ends = Ends(1.4 * SETTLEMENT, 0.6 * SETTLEMENT, 0.01, -0.02)
     force, moment, _ = resultants(ends, bed, 1.3, -1.3)

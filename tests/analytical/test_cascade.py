@@ -1,4 +1,4 @@
-"""The cascade against its definition, Eq. (20): two runs by hand, and their sum."""
+"""The cascade against its definition, Eq. (20): two separate runs, and their sum."""
 
 import math
 
@@ -65,7 +65,7 @@ RUN = {"free_vibration": "1 s", "accuracy": "reference"}
 def test_the_first_stage_is_block_and_cap_as_one_body_on_the_soil(rule, rotation):
     options = {"restraint": rule, "rotation": rotation}
     run = {**RUN, "output_step": "5 ms"}
-    whole = cascade(**options).simulate(pulse(vertical=2.0), **run)
+    complete = cascade(**options).simulate(pulse(vertical=2.0), **run)
     first = body_on_soil(**options).simulate(pulse(vertical=2.0), overturning="continue", **run)
     assert int((first.contact_state != FULL).sum()) > 20
     size = np.abs(first.rotation.values).max()
@@ -82,15 +82,17 @@ def test_the_first_stage_is_block_and_cap_as_one_body_on_the_soil(rule, rotation
         "contact_length": first.contact_length,
     }.items():
         scale = max(np.abs(expected.values).max(), size)
-        np.testing.assert_allclose(whole[name] / scale, expected / scale, atol=1e-8, err_msg=name)
-    np.testing.assert_allclose(whole.soil_reaction, first.soil_reaction, atol=1e-8 * MASS * 9.8)
-    np.testing.assert_array_equal(whole.soil_contact_state, first.contact_state)
-    soil_events = whole.event_kind.values >= 9
-    np.testing.assert_allclose(whole.event_time[soil_events], first.event_time, rtol=1e-9)
+        np.testing.assert_allclose(
+            complete[name] / scale, expected / scale, atol=1e-8, err_msg=name
+        )
+    np.testing.assert_allclose(complete.soil_reaction, first.soil_reaction, atol=1e-8 * MASS * 9.8)
+    np.testing.assert_array_equal(complete.soil_contact_state, first.contact_state)
+    soil_events = complete.event_kind.values >= 9
+    np.testing.assert_allclose(complete.event_time[soil_events], first.event_time, rtol=1e-9)
 
 
 def test_the_ground_of_the_second_stage_is_the_motion_of_the_cap_s_top():
-    """Second differences of where the top is: away from jumps they are its acceleration."""
+    """Away from jumps, second differences of the position of the top are its acceleration."""
     step = 1e-3
     response = cascade(restraint="centre").simulate(
         pulse(vertical=2.0), output_step=f"{step} s", **RUN
@@ -107,7 +109,7 @@ def test_the_ground_of_the_second_stage_is_the_motion_of_the_cap_s_top():
     ):
         expected = np.diff(place, 2) / step**2 + ground[1:-1]
         found = response[name].values[1:-1]
-        # the soil's dashpots begin and end to push in steps; away from these
+        # away from steps of the soil's dashpot forces
         bend = np.abs(np.diff(found, prepend=found[0]))
         calm = bend < 10.0 * np.median(bend)
         assert calm.mean() > 0.9
@@ -117,8 +119,8 @@ def test_the_ground_of_the_second_stage_is_the_motion_of_the_cap_s_top():
 # stage 2 ----------------------------------------------------------------------------------------
 
 
-def jumps_of_the_top(first, rule):
-    """Return times and sizes of the jumps of the top's velocity: the first body is re-pinned."""
+def jumps_of_top(first, rule):
+    """Return times and sizes of jumps of the top's velocity, where the first body is re-pinned."""
     if rule != "contact-state":
         return []
     held = {FULL: 0.0, 1: -1.6, 2: 1.6}
@@ -136,13 +138,13 @@ def jumps_of_the_top(first, rule):
     return jumps
 
 
-def second_by_hand(step, rule):
+def reference_second_stage(step, rule):
     run = {"output_step": f"{step!r} s", **RUN}
-    whole = cascade(restraint=rule).simulate(pulse(), **run)
+    complete = cascade(restraint=rule).simulate(pulse(), **run)
     first = body_on_soil(restraint=rule).simulate(pulse(), overturning="continue", **run)
-    across = whole.cap_acceleration.values.copy()
-    upwards = whole.cap_vertical_acceleration.values.copy()
-    for time, jump_x, jump_y in jumps_of_the_top(first, rule):
+    across = complete.cap_acceleration.values.copy()
+    upwards = complete.cap_vertical_acceleration.values.copy()
+    for time, jump_x, jump_y in jumps_of_top(first, rule):
         # an impulse between two samples, with its area and its centre
         i, share = divmod(time / step, 1.0)
         for sample, weight in ((int(i), 1.0 - share), (int(i) + 1, share)):
@@ -151,12 +153,14 @@ def second_by_hand(step, rule):
     carried = rf.GroundMotion.from_arrays(
         (across, "m/s^2"), f"{step!r} s", vertical=(upwards, "m/s^2")
     )
-    return whole, rf.System(block(), pads(), restraint=rule).simulate(carried, accuracy="reference")
+    return complete, rf.System(block(), pads(), restraint=rule).simulate(
+        carried, accuracy="reference"
+    )
 
 
 @pytest.mark.parametrize("rule", RULES)
 def test_the_second_stage_is_the_block_on_its_pads_on_the_moving_cap(rule):
-    """Straight lines between samples of the cap's motion: an error that falls with the step.
+    """The cap's motion is linear between samples: the error falls with the step.
 
     Where the first body is re-pinned its acceleration jumps as well as its velocity, and
     straight lines over the jump are of first order only.
@@ -164,48 +168,48 @@ def test_the_second_stage_is_the_block_on_its_pads_on_the_moving_cap(rule):
     steps = (4e-3, 1e-3, 2.5e-4)
     errors = []
     for step in steps:
-        whole, second = second_by_hand(step, rule)
+        complete, second = reference_second_stage(step, rule)
         assert second.impact_count.item() > 0
         scale = np.abs(second.rotation.values).max()
-        errors.append(np.abs(whole.rotation_on_cap - second.rotation).max().item() / scale)
+        errors.append(np.abs(complete.rotation_on_cap - second.rotation).max().item() / scale)
     assert errors[0] > errors[1] > errors[2]
     assert errors[0] > (4.0 if rule == "contact-state" else 32.0) * errors[2]
     assert errors[2] < 3e-5
-    # all of the second stage is that of the run by hand, the totals are sums
+    # the second stage equals the run by hand, the totals are sums
     for name in ("left_reaction", "right_reaction"):
-        near = np.abs(whole[name].values - second[name].values) < 1e-2 * 50e3 * 9.8
+        near = np.abs(complete[name].values - second[name].values) < 1e-2 * 50e3 * 9.8
         assert near.mean() > 0.99, name
-    assert np.mean(whole.contact_state.values == second.contact_state.values) > 0.999
-    assert whole.impact_count == second.impact_count
+    assert np.mean(complete.contact_state.values == second.contact_state.values) > 0.999
+    assert complete.impact_count == second.impact_count
     first = body_on_soil(restraint=rule).simulate(
         pulse(), output_step=f"{steps[-1]!r} s", overturning="continue", **RUN
     )
     for name in ("rotation", "vertical_displacement", "horizontal_displacement"):
         total = first[name].values + second[name].values
         scale = np.abs(total).max()
-        np.testing.assert_allclose(whole[name].values / scale, total / scale, atol=1e-4)
+        np.testing.assert_allclose(complete[name].values / scale, total / scale, atol=1e-4)
 
 
 @pytest.mark.parametrize("rule", RULES)
 def test_initial_rotation_goes_to_second_stage(rule):
     initial = rf.InitialState(rotation="0.1 rad", angular_velocity="-0.02 rad/s")
     run = {"duration": "4 s", "output_step": "5 ms", "accuracy": "reference", "initial": initial}
-    whole = cascade(restraint=rule).simulate(**run)
+    complete = cascade(restraint=rule).simulate(**run)
     alone = rf.System(block(), pads(), restraint=rule).simulate(**run)
     assert alone.impact_count.item() > 1
-    assert (whole.cap_rotation.values == 0.0).all()
-    assert (whole.soil_contact_state.values == 0).all()
-    np.testing.assert_allclose(whole.rotation, alone.rotation, atol=1e-9)
-    np.testing.assert_allclose(whole.soil_reaction, MASS * 9.80665, rtol=1e-12)
-    np.testing.assert_allclose(whole.cap_acceleration, 0.0, atol=1e-12)
-    np.testing.assert_allclose(whole.event_time, alone.event_time, rtol=1e-9)
+    assert (complete.cap_rotation.values == 0.0).all()
+    assert (complete.soil_contact_state.values == 0).all()
+    np.testing.assert_allclose(complete.rotation, alone.rotation, atol=1e-9)
+    np.testing.assert_allclose(complete.soil_reaction, MASS * 9.80665, rtol=1e-12)
+    np.testing.assert_allclose(complete.cap_acceleration, 0.0, atol=1e-12)
+    np.testing.assert_allclose(complete.event_time, alone.event_time, rtol=1e-9)
 
 
 # the total ----------------------------------------------------------------------------------------
 
 
 def test_total_rotation_decides_overturning():
-    """Neither stage reaches theta: their sum does."""
+    """Neither stage reaches theta, but their sum does."""
     fine = {"output_step": "0.2 ms", "free_vibration": "2 s", "accuracy": "reference"}
     motion = pulse(-6.5)
     stopped = cascade().simulate(motion, **fine)
@@ -234,7 +238,7 @@ def test_total_rotation_decides_overturning():
 
 
 def test_counts_and_durations_stop_at_overturning():
-    """What the stages would do after the total has overturned is no part of the run."""
+    """Motion of the stages after the total has overturned is not part of the run."""
     t = np.arange(401) * 0.01
     across = np.where(t <= 2.0, -9.0 * np.sin(math.pi * t), 0.0)
     upwards = np.where(t >= 1.0, 25.0 * np.sin(2.0 * math.pi * t), 0.0)
@@ -247,7 +251,7 @@ def test_counts_and_durations_stop_at_overturning():
     time = np.concatenate([[0.0], stopped.event_time.values, [end]])
     state = np.concatenate([[FULL], stopped.contact_state_after.values])
     flying = np.diff(time)[state == FLIGHT].sum()
-    assert longer.flight_time.item() > flying + 0.01  # there is something to leave out
+    assert longer.flight_time.item() > flying + 0.01  # the continued run has more flight
     assert stopped.flight_time.item() == pytest.approx(flying, abs=1e-9)
     into = (state[1:] == FLIGHT) & (state[:-1] != FLIGHT)
     assert stopped.flight_count.item() == into.sum()
@@ -286,7 +290,7 @@ def test_peak_of_total_rotation_is_found_between_samples():
 
 
 def test_soil_events_cause_no_vertical_impulse_on_block():
-    """What jumps is the velocity of the cap's top; pads press with forces, their hold along it."""
+    """The velocity of the cap's top jumps; pads act by forces, except along the cap."""
     soft = rf.WinklerSoil(stiffness="8 MPa", damping="100 kPa*s")
     system = rf.System(block(), pads(), CAP, soft, coupling="cascade")
     response = system.simulate(pulse(-6.0), outputs="impulse", **RUN)

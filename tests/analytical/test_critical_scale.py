@@ -33,7 +33,7 @@ def critical(motion, *, restitution=None, **options):
 
 
 def brackets(found, flip, threshold, *, within):
-    """Whether a flip's bracket holds a threshold that is known to some digits."""
+    """Return whether the bracket of a flip contains a threshold of limited precision."""
     below, above = found.scale_below[flip].item(), found.scale_above[flip].item()
     return below - within <= threshold <= above + within
 
@@ -76,9 +76,9 @@ def test_one_sine_pulse_has_safe_gap_between_overturning_modes(ratio):
         assert brackets(found, 1, upper, within=1e-6)
         assert brackets(found, 2, threshold, within=1e-8)
         assert found.followed_scale.item() >= found.critical_scale.item()
-        # in the gap the second half of the sine brings the block back from beyond theta
-        stands = found.outcome == found.outcome.flag_meanings.split().index("stands")
-        gap = stands & (found.scale > upper) & (found.scale < threshold)
+        # in the gap the second half of the sine returns the block from beyond theta
+        standing = found.outcome == found.outcome.flag_meanings.split().index("stands")
+        gap = standing & (found.scale > upper) & (found.scale < threshold)
         assert gap.any()
         assert (found.peak_rotation[gap] > THETA).all()
         reached = critical(pulse, **options)

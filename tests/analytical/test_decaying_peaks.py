@@ -1,4 +1,4 @@
-"""Peaks of a block on rigid ground that is let go, in closed form, and read back."""
+"""Peaks of free rocking on rigid ground in closed form, and parameters identified from them."""
 
 import itertools
 import math
@@ -13,7 +13,7 @@ pytestmark = pytest.mark.analytical
 
 
 def decayed(first, restitution, count, theta, rotation):
-    """Peaks by the balance of energy, of which each impact leaves the square of the restitution."""
+    """Return peaks by energy, of which each impact retains the square of the restitution."""
     left = restitution ** (2 * np.arange(count))
     if rotation == "small":
         share = left * (1.0 - (1.0 - first / theta) ** 2)
@@ -23,7 +23,7 @@ def decayed(first, restitution, count, theta, rotation):
 
 
 def times_of(peaks, theta):
-    """Times of the peaks of the linearised block, from the release."""
+    """Return times of the peaks of the linearised block after its release."""
     quarters = np.arccosh(1.0 / (1.0 - peaks / theta)) / P
     return np.concatenate([[0.0], np.cumsum(quarters[:-1] + quarters[1:])])
 
@@ -71,10 +71,10 @@ def test_confidence_intervals_from_noisy_peaks_cover_restitution():
     for seed in range(12):
         random = np.random.default_rng(seed)
         noisy = peaks + 1e-3 * theta * random.normal(size=7)
-        given = (noisy, "rad")
+        measured = (noisy, "rad")
         if seed % 2:
-            given = ((times + 0.02 * random.normal(size=7), "s"), given)
-        found = rf.fit_free_decay(system, peaks=given)
+            measured = ((times + 0.02 * random.normal(size=7), "s"), measured)
+        found = rf.fit_free_decay(system, peaks=measured)
         bounds = found.lower_confidence_bound[0], found.upper_confidence_bound[0]
         inside.append(float(bounds[0]) < restitution < float(bounds[1]))
     assert np.mean(inside) >= 0.83

@@ -1,4 +1,4 @@
-"""Blocks whose centre of mass is beside the middle of their base, in closed form."""
+"""Blocks with an eccentric centre of mass, in closed form."""
 
 import math
 
@@ -48,7 +48,7 @@ def scene(name, **options):
 
 
 class Corner:
-    """A corner of the block: from the foot of the centre of mass, and what follows."""
+    """A corner of the block, by its distance from the foot of the centre of mass."""
 
     def __init__(self, side):
         self.side = side
@@ -60,11 +60,11 @@ class Corner:
 
     @property
     def restitution(self):
-        """Of an impact on this corner: momentum about it, of a velocity about the other one."""
+        """Restitution of an impact on this corner, from rotation about the other one."""
         other = Corner(-self.side)
-        # the centre of mass moves by (H, -distance) about one and stands over the other likewise
-        kept = INERTIA + MASS * (H * H - self.distance * other.distance)
-        return kept / self.inertia
+        # the centre of mass has the velocity (H, -distance) per rate about the other corner
+        transferred = INERTIA + MASS * (H * H - self.distance * other.distance)
+        return transferred / self.inertia
 
 
 def rectangle(acceleration, duration):
@@ -74,7 +74,7 @@ def rectangle(acceleration, duration):
 
 
 def shaken(acceleration, duration, **options):
-    """Shake the linearised block towards the side that the acceleration is named after."""
+    """Shake the linearised block towards the side of the acceleration's sign."""
     return scene("rigid ground", rotation="small").simulate(
         rectangle(-acceleration, duration),
         free_vibration="40 s",
@@ -97,7 +97,7 @@ def test_uplift_to_either_side():
                 response = system.simulate(rectangle(-side * uplift * factor, 1.0))
                 assert (response.sizes["event"] > 0) == lifts
             assert np.sign(response.rotation.values[-1]) == side
-            # a long pulse overturns whatever it lifts
+            # a long pulse overturns every block that it lifts
             toppled = system.simulate(rectangle(-side * uplift * (1.0 + 1e-6), 60.0))
             assert toppled.overturning_direction.item() == side
 
@@ -117,7 +117,7 @@ def test_relative_rotation_uses_overturning_angle_of_its_side(side, word):
 
 
 def test_overturning_by_a_rectangular_pulse_to_either_side():
-    """(A/theta - 1)(exp(p t) - 1) = 1, with angle and frequency of the corner it stands on."""
+    """(A/theta - 1)(exp(p t) - 1) = 1, with angle and frequency of the pivot corner."""
     for side in (LEFT, RIGHT):
         corner = Corner(side)
         for length in (0.4, 1.0, 3.0):
@@ -178,7 +178,7 @@ def test_swing_back_from_far_side_overturns_to_near_side():
 
 
 def test_free_rocking():
-    """Housner's quarter periods about either corner, and the speeds that impacts leave."""
+    """Housner's quarter periods about either corner, and the speeds after impacts."""
     for side, share in ((LEFT, 0.1), (RIGHT, 0.6)):
         now = Corner(side)
         response = scene("rigid ground", rotation="small").simulate(
@@ -200,9 +200,9 @@ def test_free_rocking():
             speed *= now.restitution
             assert after[i] == pytest.approx(now.side * speed, rel=1e-7)
             expected += 2.0 / now.p * math.atanh(speed / (now.p * now.theta))
-        # a full cycle keeps the product of both
-        kept = Corner(LEFT).restitution * Corner(RIGHT).restitution
-        np.testing.assert_allclose(before[2:] / before[:-2], kept, rtol=1e-8)
+        # a full cycle retains the product of both
+        product = Corner(LEFT).restitution * Corner(RIGHT).restitution
+        np.testing.assert_allclose(before[2:] / before[:-2], product, rtol=1e-8)
 
 
 def test_impact_energy_loss_in_closed_form():
@@ -218,7 +218,7 @@ def test_impact_energy_loss_in_closed_form():
         lost += 0.5 * (old.inertia - new.restitution**2 * new.inertia) * speed**2
         side = -side
     assert response.impact_energy.values[-1] == pytest.approx(lost, rel=1e-9)
-    # gravity's barrier to the left
+    # the gravity barrier to the left
     barrier = WEIGHT * Corner(LEFT).radius * (
         math.cos(Corner(LEFT).theta - 0.2) - math.cos(Corner(LEFT).theta)
     )  # fmt: skip
@@ -226,7 +226,7 @@ def test_impact_energy_loss_in_closed_form():
 
 
 def test_position_of_fallen_block():
-    """Its centre of mass lies as far above the ground as it stood from the corner."""
+    """The height of its centre of mass is then its distance from the corner."""
     for side in (LEFT, RIGHT):
         corner = Corner(side)
         response = scene("rigid ground").simulate(
@@ -266,8 +266,8 @@ def test_reactions_at_rest_on_rigid_ground():
 # rest on pads and soil ------------------------------------------------------------------------
 
 
-def check_rest(system, rotation, vertical):
-    """A run that is left alone stays where it starts, and that is at rest."""
+def assert_at_rest(system, rotation, vertical):
+    """Check that an undisturbed run stays at its initial equilibrium."""
     rest = system.equilibrium()
     assert rest.rest_rotation.item() == pytest.approx(rotation, rel=1e-12)
     response = system.simulate(duration="3 s", points={"left": ("-1.2 m", "0 m")})
@@ -284,12 +284,14 @@ def test_tilted_rest_on_pads():
     matrix[1, 1] -= WEIGHT * H
     delta = 0.5 * WEIGHT / K
     level, angle = np.linalg.solve(matrix, [0.0, 2.0 * K * delta * E])
-    rest, response = check_rest(scene("pads", rotation="small"), angle, level - 0.5 * H * angle**2)
+    rest, response = assert_at_rest(
+        scene("pads", rotation="small"), angle, level - 0.5 * H * angle**2
+    )
     left = K * (delta - level - (B + E) * angle)
     assert rest.static_left_reaction.item() == pytest.approx(left, rel=1e-12)
     assert rest.static_right_reaction.item() == pytest.approx(WEIGHT - left, rel=1e-12)
     np.testing.assert_allclose(response.left_reaction, left, rtol=1e-10)
-    # the middle of the base is where it was, its left end has risen
+    # the middle of the base has not moved, its left end has risen
     assert response.residual_settlement.item() == pytest.approx(0.0, abs=1e-15)
     corner = response.sel(point="left")
     np.testing.assert_allclose(corner.point_vertical_displacement, B * angle, rtol=1e-10)
@@ -299,24 +301,24 @@ def test_tilted_rest_on_pads():
 def test_tilted_rest_on_pads_by_finite_rotation():
     delta = 0.5 * WEIGHT / K
 
-    def lack(angle):
+    def residual(angle):
         sine, cosine = math.sin(angle), math.cos(angle)
         return B * B * sine * cosine / delta - H * sine - E * cosine
 
-    angle = brentq(lack, 0.0, 0.05, xtol=1e-16)
+    angle = brentq(residual, 0.0, 0.05, xtol=1e-16)
     rise = -H * (1.0 - math.cos(angle)) - E * math.sin(angle)
-    _, response = check_rest(scene("pads"), angle, rise)
+    _, response = assert_at_rest(scene("pads"), angle, rise)
     corner = response.sel(point="left")
     np.testing.assert_allclose(corner.point_vertical_displacement, B * math.sin(angle), rtol=1e-10)
     assert response.residual_settlement.item() == pytest.approx(0.0, abs=1e-15)
 
 
 def test_tilted_rest_on_soil():
-    """Full contact, and, on softer soil, a triangle of pressure under a part of the base."""
+    """Full contact, and, on softer soil, a triangle of pressure under part of the base."""
     full = WEIGHT * E / (K0 * (2.0 * B) ** 3 / 12.0 - WEIGHT * H)
     delta = WEIGHT / (2.0 * B * K0)
     assert B * full < delta
-    rest, response = check_rest(
+    rest, response = assert_at_rest(
         scene("soil", rotation="small"), full, -0.5 * H * full**2 - E * full
     )
     assert rest.static_soil_reaction.item() == pytest.approx(WEIGHT, rel=1e-13)
@@ -324,19 +326,19 @@ def test_tilted_rest_on_soil():
     far = rf.Block(
         width="2.4 m", height="9.6 m", mass="50 t", centre_of_mass=("4 m", "-0.55 m")
     )  # fmt: skip
-    length = 2.0 * B * math.sqrt(delta / B)  # over the square root of the rotation
+    length = 2.0 * B * math.sqrt(delta / B)  # times 1/sqrt(rotation)
     part = brentq(
         lambda a: (B - 0.55 - length / math.sqrt(a) / 3.0) - H * a, delta / B, 0.04, xtol=1e-17
     )
     raised = (math.sqrt(B * part) - math.sqrt(delta)) ** 2
     system = rf.System(far, SOIL, rotation="small")
-    _, response = check_rest(system, -part, raised - 0.5 * H * part**2 - 0.55 * part)
+    _, response = assert_at_rest(system, -part, raised - 0.5 * H * part**2 - 0.55 * part)
     np.testing.assert_allclose(response.contact_length, length / math.sqrt(part), rtol=1e-10)
     assert response.residual_settlement.item() == pytest.approx(-raised, rel=1e-9)
 
 
 def test_a_base_that_is_too_soft_is_refused():
-    """Pads hold most where the first corner lifts, at a = delta/b: there b - h a is left."""
+    """The moment of pads is greatest when a corner lifts, at a = delta/b, with lever b - h a."""
     limit = WEIGHT * H / (2.0 * B * (B - E))
     for factor, holds in ((1.02, True), (0.98, False)):
         pads = rf.TwoSpringSupport(stiffness=f"{limit * factor!r} N/m", damping_ratio=0.1)
@@ -383,7 +385,7 @@ def test_moments_vanish_at_rest():
             if name == "rigid ground":
                 np.testing.assert_array_equal(moment, 0.0)
                 continue
-            # a cascade leans less: its upper stage stands on a cap that is level
+            # a cascade leans less: its upper stage stands on a level cap
             share = 0.04 if name == "cascade" else 1e-12
             assert abs(moment[0]) < share * WEIGHT * E
             assert moment[1] == pytest.approx(-WEIGHT * E, rel=1e-13)
@@ -406,7 +408,7 @@ def test_restoring_moment_is_slope_of_potential_energy():
     edges = -finite.left_overturning_angle.item(), finite.right_overturning_angle.item()
     for name in ("rigid ground", "pads", "soil"):
         state = scene(name).moment_rotation((edges, "rad"))
-        # one end bears, or little more
+        # little more than one end bears
         bound = 1e-12 if name != "soil" else 0.2
         assert np.abs(state.restoring_moment.values).max() < bound * WEIGHT * B
 
@@ -427,19 +429,19 @@ def test_reactions_follow_from_newtons_law():
             tilt = response.cap_rotation.values if name == "coupled" else 0.0
             s, c = np.sin(tilt), np.cos(tilt)
             force, press = c * force - s * press, s * force + c * press
-            if name != "cascade":  # of which the total is a sum, not one body's
+            if name != "cascade":  # the total of a cascade is a sum of two motions
                 for found, expected in (("horizontal", force), ("vertical", press)):
                     np.testing.assert_allclose(
                         response[f"{found}_reaction"], expected, atol=1e-9 * mass * G
                     )
-            shown = response.soil_reaction if "soil_reaction" in response and name in (
+            reaction = response.soil_reaction if "soil_reaction" in response and name in (
                 "soil", "one body"
             ) else response.left_reaction + response.right_reaction  # fmt: skip
-            np.testing.assert_allclose(response.vertical_reaction, shown, atol=1e-9 * mass * G)
+            np.testing.assert_allclose(response.vertical_reaction, reaction, atol=1e-9 * mass * G)
 
 
 def test_base_overturning_moment_is_that_of_pad_reactions():
-    """Held in the middle, the horizontal reaction has no lever about it."""
+    """The horizontal reaction at the held middle has no lever about it."""
     for rotation in ("finite", "small"):
         system = scene("pads", restraint="centre", rotation=rotation)
         response = system.simulate(PULSE, free_vibration="1 s", outputs="reaction")
@@ -479,7 +481,7 @@ def test_bearing_corner_does_not_move():
     assert response.point_y.values.tolist() == [0.0, 0.0, 9.6]
 
 
-# beginnings and certificates ------------------------------------------------------------------
+# initial states and certificates ------------------------------------------------------------------
 
 
 def test_runs_start_from_rest_rotation_or_initial_state():
@@ -489,27 +491,29 @@ def test_runs_start_from_rest_rotation_or_initial_state():
         plain = system.simulate(PULSE)
         moving = system.simulate(PULSE, initial=rf.InitialState(angular_velocity="0.02 rad/s"))
         upright = system.simulate(PULSE, initial=rf.InitialState(rotation="0 rad"))
-        told = system.simulate(PULSE, initial=rf.InitialState(rotation=f"{lean!r} rad"))
+        explicit = system.simulate(PULSE, initial=rf.InitialState(rotation=f"{lean!r} rad"))
         assert plain.rotation.values[0] == moving.rotation.values[0] == pytest.approx(lean)
         assert moving.angular_velocity.values[0] == pytest.approx(0.02)
         assert upright.rotation.values[0] == 0.0
-        np.testing.assert_allclose(told.rotation.values[:20], plain.rotation.values[:20], atol=1e-6)
-        # split in two: the second run goes on where the first one ended
+        np.testing.assert_allclose(
+            explicit.rotation.values[:20], plain.rotation.values[:20], atol=1e-6
+        )
+        # in two parts: the second run continues the first
         first = system.simulate(PULSE.window(end="0.4 s"), accuracy="reference")
         second = system.simulate(
             PULSE.window("0.4 s"), free_vibration="0.3 s", initial=first, accuracy="reference"
         )
-        whole = system.simulate(PULSE, free_vibration="0.3 s", accuracy="reference")
+        continuous = system.simulate(PULSE, free_vibration="0.3 s", accuracy="reference")
         both = np.concatenate([first.rotation.values, second.rotation.values[1:]])
         np.testing.assert_allclose(
-            both, whole.rotation.values[: both.size], atol=2e-7 * np.abs(both).max()
+            both, continuous.rotation.values[: both.size], atol=2e-7 * np.abs(both).max()
         )
         early = max(first.right_peak_rotation.item(), second.right_peak_rotation.item())
-        assert early == pytest.approx(whole.right_peak_rotation.item(), rel=1e-6)
+        assert early == pytest.approx(continuous.right_peak_rotation.item(), rel=1e-6)
 
 
 def test_certified_margin_is_that_of_overturning_side():
-    """The margin of a verdict is that of the threshold to the side it overturns to."""
+    """The margin of a verdict belongs to the threshold of the overturning side."""
     for side in (LEFT, RIGHT):
         corner = Corner(side)
         threshold = G * corner.theta / (1.0 - math.exp(-1.0))
@@ -526,7 +530,7 @@ def test_certified_margin_is_that_of_overturning_side():
 
 @pytest.mark.filterwarnings("ignore::rockframe.errors.ModelWarning")
 def test_restitution_that_adds_energy_is_in_cautions():
-    """Landing on the corner farther from the centre of mass at the rate of before gives energy."""
+    """Landing at an unchanged rate on the corner farther from the centre of mass adds energy."""
     about_left, about_right = (INERTIA + MASS * (H**2 + s**2) for s in (B + E, B - E))
     most = (about_right / about_left) ** 0.5
 
@@ -538,7 +542,11 @@ def test_restitution_that_adds_energy_is_in_cautions():
     gains, loses = run(1.0), run(0.999 * most)
     assert np.diff(gains.impact_energy).min() < 0.0
     assert np.diff(loses.impact_energy).min() >= 0.0
-    told = "impacts on the left corner, about which the block has more inertia than about the other"
-    assert f"{told} one, give energy with a restitution above {most:.6g}" in gains.attrs["cautions"]
+    message = (
+        "impacts on the left corner, about which the block has more inertia than about the other"
+    )
+    assert (
+        f"{message} one, give energy with a restitution above {most:.6g}" in gains.attrs["cautions"]
+    )
     assert "on the right corner" not in gains.attrs["cautions"]
     assert "give energy" not in loses.attrs["cautions"]

@@ -20,7 +20,7 @@ SEPARATION, IMPACT = 1, 2
 
 
 def thrown(pads, start, duration, motion=None, restitution=None, **options):
-    """Let a block go above its pads: start is (alpha, its rate, y, its rate)."""
+    """Release a block above its pads from (alpha, its rate, y, its rate)."""
     alpha, spin, y, speed = start
     return pads.system(restitution=restitution, **options).simulate(
         motion,
@@ -38,19 +38,19 @@ def thrown(pads, start, duration, motion=None, restitution=None, **options):
 
 
 def heights(pads, alpha, y):
-    """Heights of the left and the right corner above their places at rest."""
+    """Return heights of the left and the right corner above their rest positions."""
     middle = y + pads.h * (1.0 - math.cos(alpha))
     return middle + pads.b * math.sin(alpha), middle - pads.b * math.sin(alpha)
 
 
 def place_at(alpha, rule):
-    """Where a body let go in flight is: about the point held where both ends bear."""
+    """Return the horizontal position in flight, about the point held in full contact."""
     point = math.copysign(PADS.b, alpha) if rule == "leading-corner" else 0.0
     return PADS.h * math.sin(alpha) + point * (1.0 - math.cos(alpha))
 
 
 def landing(pads, start):
-    """Time and side of the first landing of a free parabola."""
+    """Return time and side of the first landing of a free parabola."""
     alpha, spin, y, speed = start
 
     def gap(t):
@@ -103,7 +103,7 @@ def test_flight_is_a_parabola(start, rule):
 
 
 def test_flight_over_accelerating_ground_in_closed_form():
-    """Relative to a ground of acceleration (a + s t) the block falls by the double integral."""
+    """Relative to the ground, of acceleration (a + s t), the block falls by the double integral."""
     start = (0.02, 0.1, 0.3, 1.0)
     across, upwards = np.array([1.0, 4.0]), np.array([-2.0, 3.0])
     motion = rf.GroundMotion.from_arrays((across, "m/s^2"), "0.4 s", vertical=(upwards, "m/s^2"))
@@ -127,7 +127,7 @@ def reach(pads, alpha, e):
 @pytest.mark.parametrize("rule", RULES)
 @pytest.mark.parametrize("start", THROWS)
 def test_landing_on_one_corner(start, rule, restitution):
-    """First the momentum is projected on the new restraint, then the corner is slowed."""
+    """The momentum is projected on the new restraint before the corner is slowed."""
     alpha, spin, _, speed = start
     time, side = landing(PADS, start)
     if restitution > PADS.eps_max:
@@ -140,7 +140,7 @@ def test_landing_on_one_corner(start, rule, restitution):
     e = 0.0 if rule == "centre" else PADS.b * math.copysign(1.0, alpha)
     x = reach(PADS, alpha, e)
     inertia = PADS.inertia + x * x
-    held = PADS.inertia * spin / inertia  # the centre of mass flew straight down
+    held = PADS.inertia * spin / inertia  # the centre of mass moved vertically
     lever = PADS.h * math.sin(alpha) - math.copysign(PADS.b, alpha) * math.cos(alpha)
     corner = speed + lever * held
     impulse = -(1.0 - restitution) * corner / (1.0 + lever**2 / inertia)
@@ -162,7 +162,7 @@ def test_landing_on_one_corner(start, rule, restitution):
 
 
 def flat_drop_events(pads, height, restitution, bounces):
-    """Times at which a block dropped flat on undamped pads lands and leaves again."""
+    """Return times at which a block dropped flat on undamped pads lands and leaves."""
     times = []
     speed = math.sqrt(2.0 * pads.gravity * height)
     now = speed / pads.gravity
@@ -222,7 +222,7 @@ def test_lossless_flat_bounce_returns_to_its_height():
 
 @pytest.mark.parametrize("xi", [0.05, 0.3])
 def test_block_leaves_damped_pads_when_reaction_falls_to_zero(xi):
-    """From equilibrium, kicked upwards: the reaction k(delta - y) - c y' falls through zero."""
+    """After an upward impulse at rest, the reaction k(delta - y) - c y' falls through zero."""
     pads = Pads(damping_ratio=xi)
     speed = 1.5 * pads.omega_v * pads.delta
     response = thrown(pads, (0.0, 0.0, 0.0, speed), 0.05)
@@ -273,7 +273,7 @@ def test_kick_above_dashpot_limit_starts_flight_at_once(xi):
 
 @overdamped
 def test_overdamped_pad_regains_contact_without_impact():
-    """Overdamped pads lag behind a slow kick, and touch again while the block still rises."""
+    """Overdamped pads lag after a weak impulse, and touch again while the block still rises."""
     pads = Pads(damping_ratio=2.0)
     speed = 1.01 * pads.k * pads.delta / pads.c
     response = thrown(pads, (0.0, 0.0, 0.0, speed), 0.5)
@@ -294,9 +294,9 @@ def test_overdamped_pad_regains_contact_without_impact():
 @pytest.mark.parametrize("rule", RULES)
 @pytest.mark.parametrize("side", [-1.0, 1.0])
 def test_initial_position_is_continuous_between_contact_and_flight(rule, side):
-    """The place of a body let go does not jump as its speed makes it leave its pads."""
+    """The position of a released body does not jump when its speed makes it leave its pads."""
     angle, places = side * 0.02, []
-    for above in (-1e-9, 1e-9):  # of the end that leads, over its pad
+    for above in (-1e-9, 1e-9):  # of the leading end above its pad
         low = PADS.delta - heights(PADS, angle, 0.0)[0 if side < 0.0 else 1]
         y = low + above
         run = thrown(PADS, (angle, 0.0, y, 0.0), 0.01, restraint=rule)
@@ -304,11 +304,11 @@ def test_initial_position_is_continuous_between_contact_and_flight(rule, side):
         bears = LEFT if side < 0.0 else RIGHT
         assert int(run.contact_state[0]) == (FLIGHT if above > 0.0 else bears)
     assert places[1] == pytest.approx(place_at(angle, rule), abs=1e-14)
-    if rule != "contact-state":  # which holds the corner that bears
+    if rule != "contact-state":  # that rule holds the bearing corner
         assert places[0] == pytest.approx(places[1], abs=1e-14)
 
 
-# bodies upon one another ------------------------------------------------------------------------
+# stacked bodies ------------------------------------------------------------------------
 
 
 UPPER = rf.Block(width="0.5 m", height="1.8 m", mass="900 kg")
@@ -316,7 +316,7 @@ LOWER = rf.Block(width="0.9 m", height="1 m", mass="2200 kg")
 
 
 def dropped(accuracy, restitution, **friction):
-    """Run two bodies that the ground throws up and falls away from, and their landings."""
+    """Run two bodies thrown up by the ground, including their landings."""
     pads = rf.TwoSpringSupport(
         frequency_ratio=40, damping_ratio=0.0, restitution=restitution, **friction
     )
@@ -340,9 +340,9 @@ def dropped(accuracy, restitution, **friction):
     ],
 )
 def test_bodies_in_joint_free_fall_land_together(restitution, friction):
-    """Without a force between them one bears on any of the corners that touch; all take the blow.
+    """Without a force between them, contact is at any touching corner; all take the impact.
 
-    As one body that lands flat they leave again at their own time, and do not turn.
+    As one body that lands flat, they leave again at their own time without rotation.
     """
     runs = [dropped(one, restitution, **friction) for one in ("standard", "reference")]
     for run in runs:
@@ -356,7 +356,7 @@ def test_bodies_in_joint_free_fall_land_together(restitution, friction):
 @pytest.mark.parametrize("accuracy", ["fast", "standard"])
 @pytest.mark.parametrize("peak", [-13.0, -21.0])
 def test_separation_time_does_not_depend_on_friction(accuracy, peak):
-    """Where nothing presses friction is zero, and stays so: that tells not when it came to it."""
+    """Friction without contact force stays zero, which does not indicate when it vanished."""
     falls = rf.GroundMotion.from_arrays(
         (np.zeros(4), "m/s^2"), "0.1 s", vertical=(np.array([0.0, peak, peak, peak]), "m/s^2")
     )

@@ -23,17 +23,17 @@ def motion(samples=NOISE, step=DT):
     return rf.GroundMotion.from_arrays((samples, "m/s^2"), f"{step!r} s")
 
 
-def close(found, expected, share):
+def assert_close(found, expected, share):
     np.testing.assert_allclose(found, expected, rtol=0.0, atol=share * np.abs(expected).max())
 
 
-def ground_of(floor, samples=NOISE):
-    """Return the ground at the floor's samples: it stands still after its end."""
+def ground_at_samples(floor, samples=NOISE):
+    """Return the ground motion at the floor's samples, at rest after its end."""
     return np.append(samples, np.zeros(len(floor) - samples.size))
 
 
 def integrate(slope, size, ground, dt=DT):
-    """Integrate from rest under straight lines, started anew at every sample."""
+    """Integrate from rest under linear interpolation, restarted at every sample."""
     states = np.zeros((ground.size, size))
     for k in range(ground.size - 1):
         start, rise = ground[k], (ground[k + 1] - ground[k]) / dt
@@ -57,13 +57,13 @@ def test_single_mode_floor_matches_integrated_oscillator():
             return [y[1], -a - 2.0 * damping * omega * y[1] - omega**2 * y[0]]
 
         floor = motion().through_storeys([f"{period} s"], damping, free_vibration="0.3 s")
-        states = integrate(slope, 2, ground_of(floor))
+        states = integrate(slope, 2, ground_at_samples(floor))
         expected = -2.0 * damping * omega * states[:, 1] - omega**2 * states[:, 0]
-        close(floor.si.horizontal.samples, expected, 1e-9)
+        assert_close(floor.si.horizontal.samples, expected, 1e-9)
 
 
 def test_three_storeys_of_masses_and_springs():
-    """Dashpots in proportion to masses and springs have damping ratios of their own per mode."""
+    """Dashpots proportional to masses and springs have a damping ratio for each mode."""
     masses, springs = np.array([30e3, 25e3, 12e3]), np.array([60e6, 35e6, 20e6])
     per_mass, per_spring = 0.6, 8e-4
     stiffness = np.array(
@@ -89,13 +89,13 @@ def test_three_storeys_of_masses_and_springs():
             **building, floor=floor, damping_ratio=ratios.tolist(), free_vibration="0.5 s"
         )
         if floor == 1:
-            states = integrate(slope, 6, ground_of(found))
+            states = integrate(slope, 6, ground_at_samples(found))
         expected = np.array([relative(y)[floor - 1] for y in states])
-        close(found.si.horizontal.samples, expected, 1e-9)
+        assert_close(found.si.horizontal.samples, expected, 1e-9)
 
 
 def exact(ground, period, damping, dt=DT):
-    """Follow an oscillator and its straight ground, with forty digits."""
+    """Integrate an oscillator under piecewise linear ground motion, with forty digits."""
     mpmath.mp.dps = 40
     omega = 2 * mpmath.pi / mpmath.mpf(period)
     # of u, du/dt/omega, the ground and its rise over a step
@@ -117,8 +117,8 @@ def test_floor_samples_match_exact_recurrence():
     for period in (0.02, 0.08, 0.5, 20.0):
         for damping, share in ((0.0, 1e-12), (0.05, 1e-13), (1.0, 1e-13)):
             floor = motion().through_storeys([f"{period} s"], damping, free_vibration="1 s")
-            expected = exact(ground_of(floor), period, damping)
-            close(floor.si.horizontal.samples, expected, share)
+            expected = exact(ground_at_samples(floor), period, damping)
+            assert_close(floor.si.horizontal.samples, expected, share)
 
 
 def test_finer_time_step_gives_same_floor_motion():
@@ -128,16 +128,16 @@ def test_finer_time_step_gives_same_floor_motion():
             ["0.15 s", "0.04 s"], floor_participations=[1.3, -0.4], time_step=step
         )
         assert fine.si.time_step == DT / parts
-        close(fine.si.horizontal.samples[::parts], coarse.si.horizontal.samples, 1e-13)
-    ground = ground_of(coarse)
+        assert_close(fine.si.horizontal.samples[::parts], coarse.si.horizontal.samples, 1e-13)
+    ground = ground_at_samples(coarse)
     expected = (
         0.1 * ground + 1.3 * exact(ground, 0.15, 0.05) - 0.4 * exact(ground, 0.04, 0.05)
     )  # fmt: skip
-    close(coarse.si.horizontal.samples, expected, 1e-13)
+    assert_close(coarse.si.horizontal.samples, expected, 1e-13)
 
 
 def test_a_harmonic_from_rest_in_closed_form():
-    """A pulse is followed by its polynomials, not by straight lines through its samples."""
+    """A pulse is integrated by its polynomials, not by straight lines through its samples."""
     rate, omega, damping = 2.0 * math.pi, 2.0 * math.pi / 0.37, 0.04
     pulse = rf.GroundMotion.harmonic("1 m/s^2", "1 Hz", duration="5 s")
     floor = pulse.through_storeys(["0.37 s"], damping, time_step="0.002 s").si.horizontal
@@ -151,11 +151,11 @@ def test_a_harmonic_from_rest_in_closed_form():
     u = s * np.sin(rate * time) + c * np.cos(rate * time) + free.real
     v = rate * (s * np.cos(rate * time) - c * np.sin(rate * time)) + (root * free).real
     assert abs(u[0]) + abs(v[0]) < 1e-15
-    close(floor.samples[: time.size], -2.0 * damping * omega * v - omega**2 * u, 1e-11)
+    assert_close(floor.samples[: time.size], -2.0 * damping * omega * v - omega**2 * u, 1e-11)
 
 
 def test_jump_of_pulse_is_resolved_exactly():
-    """Under a constant acceleration a floor swings about it, undamped up to twice as high."""
+    """Under a constant acceleration an undamped floor reaches twice that value."""
     pulse = rf.GroundMotion.cosine_pulse("1 m/s^2", "0.01 Hz", cycles=1)
     floor = pulse.through_storeys(
         ["0.5 s"], 0, free_vibration="0 s", time_step="0.001 s"
@@ -163,7 +163,7 @@ def test_jump_of_pulse_is_resolved_exactly():
     time = floor.times[:500]
     slow, omega = 0.02 * math.pi, 4.0 * math.pi
     u = -(np.cos(slow * time) - np.cos(omega * time)) / (omega**2 - slow**2)
-    close(floor.samples[:500], -(omega**2) * u, 1e-11)
+    assert_close(floor.samples[:500], -(omega**2) * u, 1e-11)
     assert floor.samples[250] == pytest.approx(2.0, rel=1e-3)
 
 
@@ -191,7 +191,7 @@ def test_the_spectrum_of_a_floor_is_that_of_an_oscillator_on_an_oscillator():
 
 
 def test_transmissibilities_of_floor_and_oscillator_multiply():
-    """A long harmonic that fades in: the transmissibilities of floor and oscillator multiply."""
+    """For a long harmonic that fades in, transmissibilities of floor and oscillator multiply."""
     step, below, above, damping = 0.005, 0.6, 0.35, 0.05
     time = np.arange(12_001) * step
     swell = np.sin(0.5 * np.pi * np.minimum(1.0, np.minimum(time, time[-1] - time) / 20.0)) ** 2
@@ -210,9 +210,9 @@ def test_transmissibilities_of_floor_and_oscillator_multiply():
 
 def test_stiff_floors_follow_ground_and_soft_floors_stand_still():
     smooth = np.convolve(NOISE, np.hanning(30), "full")
-    for period, rest in (("0 s", 0.0), ("1e-5 s", 1e-4), ("0.001 s", 1e-2)):
+    for period, tolerance in (("0 s", 0.0), ("1e-5 s", 1e-4), ("0.001 s", 1e-2)):
         floor = motion(smooth).through_storeys([period], 0.05).si.horizontal.samples
-        close(floor, ground_of(floor, smooth), rest)
+        assert_close(floor, ground_at_samples(floor, smooth), tolerance)
     peak = np.abs(smooth).max()
     for period in (1e3, 1e5):
         floor = motion(smooth).through_storeys([f"{period} s"], 0.0, free_vibration="0 s")
@@ -226,7 +226,7 @@ def test_floor_motion_is_linear_and_mirrored():
     one = motion().through_storeys(**building).si.horizontal.samples
     other = motion(NOISE[::-1]).through_storeys(**building).si.horizontal.samples
     both = motion(2.0 * NOISE - 0.5 * NOISE[::-1]).through_storeys(**building)
-    close(both.si.horizontal.samples, 2.0 * one - 0.5 * other, 1e-13)
+    assert_close(both.si.horizontal.samples, 2.0 * one - 0.5 * other, 1e-13)
     mirrored = motion(-NOISE).through_storeys(**building).si.horizontal.samples
     assert mirrored.tolist() == (-one).tolist()
 
@@ -246,18 +246,18 @@ def test_uniform_storeys_match_assembled_masses_and_stiffnesses():
                 floor=floor,
                 free_vibration="1 s",
             )
-            close(uniform.si.horizontal.samples, assembled.si.horizontal.samples, 1e-9)
+            assert_close(uniform.si.horizontal.samples, assembled.si.horizontal.samples, 1e-9)
 
 
 def test_truncated_modes_move_with_ground():
-    """The first mode alone misses little where the others are stiff to the motion."""
+    """The first mode alone suffices where the others are stiff relative to the motion."""
     smooth = motion(np.convolve(NOISE, np.hanning(40), "full") / 10.0)
     building = {"storeys": 4, "floor": 2, "period": "0.2 s", "time_step": "0.002 s"}
-    whole = smooth.through_storeys(**building).si.horizontal.samples
+    all_modes = smooth.through_storeys(**building).si.horizontal.samples
     errors = []
     for modes in (1, 2, 3, 4):
         part = smooth.through_storeys(**building, modes=modes).si.horizontal.samples
-        errors.append(np.abs(part - whole).max() / np.abs(whole).max())
+        errors.append(np.abs(part - all_modes).max() / np.abs(all_modes).max())
     assert errors[0] < 0.1
     assert errors[3] == 0.0
     assert sorted(errors, reverse=True) == errors

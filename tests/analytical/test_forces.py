@@ -33,9 +33,9 @@ SCENES = {
     "coupled": rf.System(BLOCK, PADS, CAP, SOIL),
     "cascade": rf.System(BLOCK, PADS, CAP, SOIL, coupling="cascade"),
 }
-OF_SOME = {
+SCENE_VARIABLES = {
     "toe_pressure": ("soil", "one body", "coupled", "cascade"),
-    "soil_friction_demand": ("coupled", "cascade"),  # elsewhere that of the one base there is
+    "soil_friction_demand": ("coupled", "cascade"),  # other scenes have only one base
 }
 POINTS = {"roof": ("0 m", "9.6 m"), "right corner": ("1.2 m", "0 m"), "left": ("-1.2 m", "0 m")}
 ALL = (*GROUPS, "friction_demand", "horizontal_velocity")
@@ -57,7 +57,7 @@ def response(scene):
     )
 
 
-def twice(response, history):
+def second_derivative(response, history):
     """Differentiate a history twice where no event is near; NaN elsewhere, and at both ends."""
     time, events = response.time.values, np.unique(response.event_time.values)
     found = np.full(time.size, np.nan)
@@ -68,7 +68,7 @@ def twice(response, history):
     return found
 
 
-def agree(found, expected, share):
+def assert_close(found, expected, share):
     known = ~np.isnan(found)
     assert known.mean() > 0.5
     error = np.abs(found - expected)[known].max()
@@ -81,19 +81,21 @@ def test_accelerations_are_the_second_derivatives_of_displacements(response):
         ("horizontal_displacement", "horizontal_acceleration"),
         ("vertical_displacement", "vertical_acceleration"),
     ):
-        slope = twice(response, response[displacement].values)
-        agree(slope, response[acceleration].values, 1e-3)
+        slope = second_derivative(response, response[displacement].values)
+        assert_close(slope, response[acceleration].values, 1e-3)
 
 
 def test_points_move_with_the_body(response):
     for name in POINTS:
         point = response.sel(point=name)
-        for way, ground in (
+        for direction, ground in (
             ("horizontal", response.ground_acceleration),
             ("vertical", response.vertical_ground_acceleration),
         ):
-            slope = twice(response, point[f"point_{way}_displacement"].values)
-            agree(slope + ground.values, point[f"point_{way}_acceleration"].values, 1e-3)
+            slope = second_derivative(response, point[f"point_{direction}_displacement"].values)
+            assert_close(
+                slope + ground.values, point[f"point_{direction}_acceleration"].values, 1e-3
+            )
     # a rigid body: its corners stay as far apart as they are
     right, left = response.sel(point="right corner"), response.sel(point="left")
     wide = 2.0 * B + right.point_horizontal_displacement - left.point_horizontal_displacement
@@ -108,10 +110,10 @@ def test_bearing_corner_on_rigid_ground_does_not_move():
         bears = response.contact_state.values == state
         assert bears.any()
         corner = response.sel(point=name).isel(time=bears)
-        for way, ground in (("horizontal", ""), ("vertical", "vertical_")):
-            assert np.abs(corner[f"point_{way}_displacement"]).max() < 1e-14
+        for direction, ground in (("horizontal", ""), ("vertical", "vertical_")):
+            assert np.abs(corner[f"point_{direction}_displacement"]).max() < 1e-14
             np.testing.assert_allclose(
-                corner[f"point_{way}_acceleration"], corner[f"{ground}ground_acceleration"],
+                corner[f"point_{direction}_acceleration"], corner[f"{ground}ground_acceleration"],
                 atol=1e-12,
             )  # fmt: skip
 
@@ -124,7 +126,7 @@ def test_reactions_follow_from_newtons_law(scene, response):
         tilt = response.cap_rotation.values if scene == "coupled" else 0.0
         s, c = np.sin(tilt), np.cos(tilt)
         force, press = c * force - s * press, s * force + c * press
-    if scene != "cascade":  # of which the total is a sum of displacements, not one body's
+    if scene != "cascade":  # the total of a cascade is a sum of displacements, not of one body
         for found, expected in (("horizontal", force), ("vertical", press)):
             np.testing.assert_allclose(
                 response[f"{found}_reaction"], expected, atol=1e-9 * mass * G
@@ -159,7 +161,7 @@ ON_PADS = {
 @pytest.mark.wide
 @pytest.mark.parametrize("where", ON_PADS)
 def test_base_overturning_moment_is_that_of_pad_reactions(where):
-    """Held in the middle, the horizontal reaction has no lever about it."""
+    """The horizontal reaction at the held middle has no lever about it."""
     coupling = "cascade" if "cascade" in where else "coupled"
     system = rf.System(*ON_PADS[where], restraint="centre", coupling=coupling)
     response = system.simulate(PULSE, outputs="reaction")
@@ -184,7 +186,7 @@ def test_toe_pressure_in_closed_form():
 
 
 def test_friction_demand_of_released_block_in_closed_form():
-    """Of a rocking block, from the energy that it has at each angle."""
+    """Friction demand of a rocking block, from its energy at each angle."""
     start, share, theta, radius = 0.15, 0.75, math.atan2(B, H), math.hypot(B, H)
     system = rf.System(BLOCK)
     response = system.simulate(
@@ -198,7 +200,7 @@ def test_friction_demand_of_released_block_in_closed_form():
     up = G + radius * (-pull * np.sin(lean) ** 2 - np.cos(lean) * square)
     assert falls.time.size > 50
     np.testing.assert_allclose(falls.friction_demand, np.abs(across) / up, rtol=1e-8)
-    # about its lower corner a block falls flatter the lower it is: the demand grows to impact
+    # the motion of the centre is more horizontal at small rotations: the demand grows to impact
     assert response.peak_friction_demand == pytest.approx(
         share * math.sin(theta) * math.cos(theta) / (1.0 - share * math.sin(theta) ** 2), rel=0.2
     )
@@ -220,7 +222,7 @@ def test_impulsive_friction_demand_in_closed_form():
 
 @pytest.mark.parametrize("lean", [0.0, 0.1, -0.2])
 def test_event_impulses_are_resolved_along_tilted_base(lean):
-    """As that of forces: along and normal to the cap or to the body below, however they lean."""
+    """As for forces: along and normal to the cap or body below, for any rotation."""
     system = rf.System(rf.Stack(BLOCK, BLOCK, interfaces=[PADS]), PADS)
     along, normal = 0.3, 2.0
     zero, turned = np.zeros(1), np.array([lean + 0.05])
@@ -238,7 +240,7 @@ def test_event_impulses_are_resolved_along_tilted_base(lean):
 
 
 def test_rest_event_is_left_out_of_impulsive_friction_demand():
-    """The last event of an endless series ends all motion at once, in a ratio of its own."""
+    """The last event of an endless series ends all motion at once, in its own ratio."""
     response = rf.System(BLOCK, rf.RigidGround(restitution=0.8)).simulate(
         duration="60 s", initial=rf.InitialState(rotation="0.05 rad")
     )
@@ -270,8 +272,8 @@ def test_force_peaks_bound_their_histories(response):
 @pytest.mark.parametrize("scene", ["rigid ground", "pads"])
 def test_residuals_are_taken_at_end_between_samples(scene):
     runs = [
-        SCENES[scene].simulate(PULSE, duration="1.3 s", **asked)
-        for asked in (
+        SCENES[scene].simulate(PULSE, duration="1.3 s", **outputs)
+        for outputs in (
             {},
             {"output_step": "0.2 s"},
             {"outputs": None, "points": {"top": ("0 m", f"{H} m")}},
@@ -302,7 +304,7 @@ def test_output_groups_return_only_requested_variables(scene):
 
 @pytest.mark.parametrize("name", ON_REQUEST)
 def test_single_output_can_be_requested_by_name(scene, name):
-    if scene not in OF_SOME.get(name, SCENES):
+    if scene not in SCENE_VARIABLES.get(name, SCENES):
         pytest.skip("the scene has no such thing")
     assert name in SCENES[scene].simulate(PULSE, duration="0.5 s", outputs=name)
 
@@ -342,8 +344,8 @@ def test_verdict_reports_friction_demand():
     response = SCENES["rigid ground"].simulate(PULSE)
     needed = response.peak_friction_demand.item()
     lasted = response.peak_friction_demand_duration.item()
-    told = f"Friction needed: {needed:.3g}, more than half of it for {lasted:.3g} s in all."
-    assert response.attrs["verdict"].endswith(told)
+    sentence = f"Friction needed: {needed:.3g}, more than half of it for {lasted:.3g} s in all."
+    assert response.attrs["verdict"].endswith(sentence)
     at_rest = SCENES["rigid ground"].simulate(PULSE.scaled(0.0))
     assert at_rest.peak_friction_demand == 0.0
     for other in (at_rest, SCENES["rigid ground"].simulate(PULSE, outputs=None)):
@@ -374,9 +376,9 @@ DRY = rf.RigidGround()
     ids=["tendon", "load", "tie", "frame", "stack"],
 )
 def test_described_friction_to_rock_is_demand_at_uplift(system):
-    told = " ".join(system.describe().split())
-    least = min(map(float, re.findall(r"friction to rock, at least (?:b/h )?([\d.]+)", told)))
-    found = re.findall(r"as one at xg'' of ([\d.]+)|preload holds, ([\d.]+)", told)
+    text = " ".join(system.describe().split())
+    least = min(map(float, re.findall(r"friction to rock, at least (?:b/h )?([\d.]+)", text)))
+    found = re.findall(r"as one at xg'' of ([\d.]+)|preload holds, ([\d.]+)", text)
     starts = min(float(one or other) for one, other in found)
     for share, rocks in ((0.998, False), (1.002, True)):
         level = share * starts
@@ -389,7 +391,7 @@ def test_described_friction_to_rock_is_demand_at_uplift(system):
 
 
 def test_description_lists_friction_to_rock_of_each_base_and_free_side():
-    told = " ".join(rf.System(rf.Stack(BLOCK, DRUM, interfaces=[DRY]), DRY).describe().split())
+    text = " ".join(rf.System(rf.Stack(BLOCK, DRUM, interfaces=[DRY]), DRY).describe().split())
     height = (50.0 * (3.0 + H) + 60.0 * 1.5) / 110.0
     for words in (
         "body 1: overturning angle theta, Eq. (1) 0.244979 rad",
@@ -397,7 +399,7 @@ def test_description_lists_friction_to_rock_of_each_base_and_free_side():
         f"base 2: friction to rock, at least b/h {1.4 / height:.6g} ",
         f"base 2: rigid, all above rocks as one at xg'' of {G * 1.4 / height:.4g} m s^-2",
     ):
-        assert words in told
+        assert words in text
     leaning = rf.Block(
         width="1 m", height="4 m", mass="4 t", inertia="5 t*m^2", centre_of_mass=("2 m", "0.2 m")
     )
@@ -417,14 +419,14 @@ def test_too_little_friction_warns_with_time_and_duration():
     text = str(caught[0].message)
     first = time[demand > 0.25][0]
     lasted = (demand > 0.25).sum() * (time[1] - time[0])
-    told = float(text.split(" from ")[1].split(" s on")[0])
+    stated = float(text.split(" from ")[1].split(" s on")[0])
     assert response.would_slide
-    assert response.sliding_time == pytest.approx(told, rel=1e-3)
-    assert first - (time[1] - time[0]) <= told <= first
+    assert response.sliding_time == pytest.approx(stated, rel=1e-3)
+    assert first - (time[1] - time[0]) <= stated <= first
     assert float(text.split("for ")[1].split(" s in all")[0]) == pytest.approx(lasted, rel=0.05)
     assert f"needs {reference.peak_friction_demand.item():.3g} of 0.25, " in text
-    said = text.removeprefix("the block ").removesuffix("; the model holds it")
-    assert response.attrs["verdict"].endswith(f"; 1 impact. {said.capitalize()}.")
+    statement = text.removeprefix("the block ").removesuffix("; the model holds it")
+    assert response.attrs["verdict"].endswith(f"; 1 impact. {statement.capitalize()}.")
     assert response.attrs["cautions"] == text
     np.testing.assert_array_equal(response.rotation, reference.rotation)
     most = reference.peak_friction_demand.item()
@@ -439,7 +441,7 @@ def test_too_little_friction_warns_with_time_and_duration():
     )
     with pytest.warns(ModelWarning, match="the frame would slide from"):
         rf.System(FRAME, ground).simulate(PULSE)
-    # two numbers that look alike are told in as many digits as tell them apart
+    # similar numbers are printed with enough digits to distinguish them
     almost = rf.RigidGround(friction=(1.0 - 1e-6) * most)
     with pytest.warns(ModelWarning, match="needs 0.33[0-9]{4,} of 0.33[0-9]{4,},"):
         rf.System(BLOCK, almost, sliding="checked").simulate(PULSE)

@@ -1,4 +1,4 @@
-"""A rocking frame with tendons: closed forms, limits, energies, mirror, files and figures."""
+"""A rocking frame with tendons: closed forms, limits, energies, symmetry, files and figures."""
 
 import numpy as np
 import pytest
@@ -91,7 +91,7 @@ def test_frame_without_beam_matches_block_with_equivalent_tendon():
 
 
 @pytest.mark.parametrize(
-    ("given", "kinds"),
+    ("options", "kinds"),
     [
         ({"preload": "200 kN"}, {2}),
         ({}, {2}),
@@ -99,8 +99,8 @@ def test_frame_without_beam_matches_block_with_equivalent_tendon():
         ({"preload": "200 kN", "strength": "0.5 MN", "brittle": True}, {2, 16}),
     ],
 )
-def test_energy_balances_and_mirrored_motion_mirrors_response(given, kinds):
-    system = rf.System(BENT, rf.Tendon(stiffness="5 MN/m", **given))
+def test_energy_balances_and_mirrored_motion_mirrors_response(options, kinds):
+    system = rf.System(BENT, rf.Tendon(stiffness="5 MN/m", **options))
     run = system.simulate(PULSE, **PLAN)
     assert float(run.energy_residual) < 1e-8
     assert kinds <= set(run.event_kind.values.tolist())

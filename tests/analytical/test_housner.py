@@ -53,9 +53,9 @@ def test_rotation_is_a_hyperbolic_cosine(share):
 
 
 def decay(share, ratio, impacts):
-    """Rotation after each impact over theta, of the linearised block."""
-    gone = ratio ** np.arange(1, impacts + 1) * (1.0 - (1.0 - share) ** 2)
-    return 1.0 - np.sqrt(1.0 - gone)
+    """Return peak rotations over theta after each impact of the linearised block."""
+    shares = ratio ** np.arange(1, impacts + 1) * (1.0 - (1.0 - share) ** 2)
+    return 1.0 - np.sqrt(1.0 - shares)
 
 
 @pytest.mark.parametrize("share", [0.25, 0.5, 0.9])
@@ -89,7 +89,7 @@ def test_printed_decay_of_the_nonlinear_block():
 
 
 def exact_quarter(theta, share):
-    """p T/4 of the nonlinear block, from its energy; the substitution takes the singular end."""
+    """Return p T/4 of the nonlinear block, by energy; a substitution removes the singularity."""
     start = share * theta
 
     def slowness(u):
@@ -126,7 +126,7 @@ def test_restitution_conserves_the_angular_momentum_about_the_new_corner(slender
     b, h = 1.0, slenderness
     inertia = (b * b + h * h) / 3.0
     corner = inertia + b * b + h * h
-    # rocking on one corner: momentum about the other one, per unit rate
+    # rocking on one corner: angular momentum about the other one, per unit rate
     about_the_other = inertia + h * h - b * b
     system = rigid_block(math.atan(1.0 / slenderness))
     assert system.setting.restitution.left == pytest.approx(about_the_other / corner, rel=1e-13)
@@ -155,18 +155,18 @@ def test_uplift_starts_at_its_threshold(rotation):
         )
         expected = math.asin(1.0 / 1.001) / (2.0 * math.pi)
         assert moved.first_uplift_time.item() == pytest.approx(expected, rel=1e-7)
-        # the ground runs to the right: the block leans to the left
+        # the ground accelerates to the right: the block leans to the left
         first = np.flatnonzero(moved.rotation.values)[0]
         assert np.sign(moved.rotation.values[first]) == -sign
 
 
 def test_slow_landing_on_tipping_ground_does_not_come_to_rest():
-    """It bounces on one corner for an instant, and leaves over the other one with its speed."""
+    """The block bounces on one corner for an instant, and rocks on over the other one."""
     b, h, restitution, ground = 0.5, 2.0, 0.3, -0.27 * GRAVITY
     block = rf.Block(width="1 m", height="4 m", mass="1 t")
     system = rf.System(block, rf.RigidGround(restitution=restitution), gravity=f"{GRAVITY!r} m/s^2")
     motion = rf.GroundMotion.from_arrays(([ground, ground], "m/s^2"), "0.02 s")
-    # it lands so slowly that its rebound is below the share of the overturning angle that is rest
+    # it lands so slowly that its rebound is below the share of the overturning angle taken as rest
     start, rate = 1e-10, -1e-5
     run = system.simulate(
         motion,
@@ -223,7 +223,7 @@ def test_a_steady_vertical_acceleration_acts_as_gravity(vertical):
     ("slenderness", "height", "printed"), [(4.0, 2.0, 0.924895), (6.0, 6.0, 1.054801)]
 )
 def test_overturning_velocity_step_in_closed_form(slenderness, height, printed):
-    """A sudden velocity V of the ground gives m h V of moment of momentum about the corner."""
+    """A sudden ground velocity V gives the angular momentum m h V about the corner."""
     theta = math.atan(1.0 / slenderness)
     radius = 0.5 * height / math.cos(theta)
     corner_inertia = 4.0 / 3.0 * radius**2
@@ -250,7 +250,7 @@ def test_overturning_velocity_step_in_closed_form(slenderness, height, printed):
 
 
 def test_a_short_strong_pulse_is_a_velocity_step():
-    """The same, by an acceleration of 1 microsecond: the rate it leaves is -h V m/I_corner."""
+    """The same by an acceleration of 1 microsecond, after which the rate is -h V m/I_corner."""
     system = rigid_block(0.2)
     speed, length = 0.3, 1e-6
     peak = 2.0 * speed / length
@@ -262,7 +262,7 @@ def test_a_short_strong_pulse_is_a_velocity_step():
 
 
 def test_ground_tension_warns():
-    """A squat block, thrown fast: at impact m (g - R0 cos(theta) a'^2 ...) is negative."""
+    """A squat block at high speed: at impact m (g - R0 cos(theta) a'^2 ...) is negative."""
     system = rf.System(rf.Block(width="2 m", height="2 m", mass="1 t"))
     fast = rf.InitialState(rotation="0.1 rad", angular_velocity="-4 rad/s")
     with pytest.warns(ModelWarning, match=r"the ground would have to pull .* TwoSpringSupport"):

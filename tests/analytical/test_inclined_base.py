@@ -21,13 +21,13 @@ STEP = 0.02
 END = 4.0
 
 
-def stone_of(block):
+def reference_block(block):
     si = block.si
     return Stone(si.half_width, si.centre_height, si.mass, si.inertia, si.eccentricity)
 
 
 def record(seed, horizontal, vertical):
-    """Draw a smooth motion of 2 s; give it, and its acceleration as a function of time."""
+    """Sample a smooth motion of 2 s; return it and its acceleration as a function of time."""
     rng = np.random.default_rng(seed)
     time = np.arange(0.0, 2.0 + STEP / 2.0, STEP)
     taper = np.sin(np.pi * time / time[-1])
@@ -50,15 +50,15 @@ SCENES = {
     "uphill": (BLOCK, 4.0, record(1, 4.5, 0.0)),
     "downhill": (BLOCK, -4.0, record(2, -4.5, 0.0)),
     "both components": (BLOCK, 6.0, record(7, 3.5, 4.0)),
-    "centre of mass beside": (LOPSIDED, 5.0, record(4, -4.0, -3.0)),
-    "beside, the other way": (LOPSIDED, -5.0, record(4, 3.5, 5.0)),
+    "eccentric": (LOPSIDED, 5.0, record(4, -4.0, -3.0)),
+    "eccentric, mirrored": (LOPSIDED, -5.0, record(4, 3.5, 5.0)),
 }
 
 
 @pytest.mark.parametrize(
     "name",
     [
-        pytest.param(name, marks=[pytest.mark.long] * (name in ("uphill", "centre of mass beside")))
+        pytest.param(name, marks=[pytest.mark.long] * (name in ("uphill", "eccentric")))
         for name in SCENES
     ],
 )
@@ -68,14 +68,16 @@ def test_rigid_ground_against_true_axes(name):
     found = system.simulate(motion, duration=f"{END} s", accuracy=1e-12)
     assert found.impact_count.item() > 3
     assert not found.overturned.item()
-    wanted = rocking(stone_of(block), math.radians(degrees), ground, END, found.time.values)
-    apart = np.abs(found.rotation.values - wanted).max()
+    expected = rocking(
+        reference_block(block), math.radians(degrees), ground, END, found.time.values
+    )
+    apart = np.abs(found.rotation.values - expected).max()
     assert apart < 1e-7 * THETA, apart / THETA
 
 
 @pytest.mark.parametrize(
     "name",
-    [pytest.param("both components", marks=pytest.mark.long), "beside, the other way"],
+    [pytest.param("both components", marks=pytest.mark.long), "eccentric, mirrored"],
 )
 def test_pads_against_true_axes(name):
     block, degrees, (motion, ground) = SCENES[name]
@@ -86,14 +88,14 @@ def test_pads_against_true_axes(name):
     with pytest.warns(ModelWarning, match="exceeds eps_max"):
         system = rf.System(block, pads, restraint="centre", inclination=f"{degrees} deg")
     found = system.simulate(motion, duration="1.2 s", accuracy=1e-12)
-    one = OnPads(stone_of(block), math.radians(degrees), stiffness, damping)
-    rotation, along, off, switches = one.response(ground, 1.2, found.time.values)
+    reference = OnPads(reference_block(block), math.radians(degrees), stiffness, damping)
+    rotation, along, off, switches = reference.response(ground, 1.2, found.time.values)
     assert switches > 4
     assert np.abs(found.rotation.values - rotation).max() < 1e-7 * THETA
     size = 1e-7 * THETA * HEIGHT
-    for name, wanted in (("horizontal_displacement", along), ("vertical_displacement", off)):
+    for name, expected in (("horizontal_displacement", along), ("vertical_displacement", off)):
         moved = found[name].values - found[name].values[0]
-        assert np.abs(moved - wanted).max() < size, name
+        assert np.abs(moved - expected).max() < size, name
 
 
 def test_block_falls_beyond_slope_of_its_downhill_corner():
@@ -187,7 +189,7 @@ def test_rest_rotation_and_reactions_on_compliant_slopes():
 @pytest.mark.parametrize("share", [0.3, 0.9, 0.99, 0.999])
 @pytest.mark.parametrize("side", [1.0, -1.0])
 def test_body_on_bed_rests_in_full_contact_up_to_uplift(share, side):
-    """There K sin a cos a = m g h sin(i + a); beyond it the held point moves, and so does rest."""
+    """At rest K sin a cos a = m g h sin(i + a), until the held point moves."""
     b, h, stiffness = 0.5 * WIDTH, 0.5 * HEIGHT, 2e6
     rocking, weight = stiffness * b**3 / 1.5, MASS * G
     lean = inclination = 0.0
@@ -212,7 +214,7 @@ def test_body_on_bed_rests_in_full_contact_up_to_uplift(share, side):
 @pytest.mark.filterwarnings("ignore:at rest the body leans")
 @pytest.mark.parametrize("inclination", [0.02, -0.03])
 def test_restoring_moment_of_stack_vanishes_at_rest_on_slope(inclination):
-    """Rest from the accelerations, the holding moment from the balance of forces."""
+    """Rest from zero accelerations, the holding moment from the balance of forces."""
     system = rf.System(
         rf.Block(width="2 m", height="5 m", mass="40 t"),
         rf.TwoSpringSupport(frequency_ratio=12, damping_ratio=0.1),

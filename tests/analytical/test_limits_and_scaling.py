@@ -1,4 +1,4 @@
-"""Stiff pads against rigid ground, and blocks of different size against one another."""
+"""Stiff pads approach rigid ground; responses of blocks of different size are similar."""
 
 import itertools
 import math
@@ -18,9 +18,9 @@ RULES = ("contact-state", "leading-corner", "centre")
 def deviation(slenderness, radius, beta, rule, pulse):
     """Return the largest difference of alpha/theta between stiff pads and rigid ground.
 
-    The dashpots are strong: a pad of xi = 10 takes a landing corner without
-    throwing it back. Weakly damped pads let the block hop, however stiff they
-    are, and have another limit.
+    The dashpots are strong: a pad of xi = 10 stops a landing corner without
+    rebound. Weakly damped pads let the block bounce, however stiff they are,
+    and have another limit.
     """
     pads = Pads(radius=radius, slenderness=slenderness, beta=beta, damping_ratio=10.0, gravity=9.81)
     block = rf.Block.from_size(
@@ -54,7 +54,7 @@ def test_stiff_pads_tend_to_rigid_ground(slenderness, radius, amplitude, rule):
     histories = [row[0] for row in found]
     for coarse, fine in itertools.pairwise(histories):
         assert fine < 0.6 * coarse
-    # the time that a pad takes to stop a corner falls with beta
+    # the time in which a pad stops a corner decreases with beta
     for beta, (history, peak, *_) in list(zip(stiffness, found, strict=True))[2:]:
         assert history < 5.0 / beta
         assert peak < 5.0 / beta
@@ -83,7 +83,7 @@ def test_stiff_pads_overturn_as_rigid_ground(slenderness, radius, impacts, time,
 @overdamped
 @pytest.mark.parametrize("rule", RULES)
 def test_energy_of_block_rolling_on_stiff_pads(rule):
-    """Before any impact: released at an angle, it falls as the energy of its rule says."""
+    """Before any impact: a released block falls by the energy of its rule."""
     pads = Pads(beta=2000.0, damping_ratio=10.0)
     start = 0.15
     response = pads.system(restraint=rule).simulate(
@@ -111,7 +111,7 @@ def test_energy_of_block_rolling_on_stiff_pads(rule):
 
 
 def scaled_run(system, size, noisy=False):
-    """Shake with accelerations of one shape, as much slower as the block is larger."""
+    """Shake with accelerations of one shape, slowed in proportion to the size of the block."""
     slower = math.sqrt(size)
     if noisy:
         rng = np.random.default_rng(8)
@@ -169,7 +169,7 @@ def test_response_scales_with_block_size(rule, size, noisy):
 @pytest.mark.parametrize("gravity", ["1.62 m/s^2", "39.2266 m/s^2"])
 @pytest.mark.parametrize("rule", ["rigid", "contact-state"])
 def test_gravity_changes_only_time_scale(rule, gravity):
-    """With accelerations in shares of gravity, only the time scale changes."""
+    """With accelerations relative to gravity, only the time scale changes."""
     responses = []
     for value in ("9.80665 m/s^2", gravity):
         g = float(value.split()[0])

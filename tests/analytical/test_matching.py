@@ -1,4 +1,4 @@
-"""Spectral matching in time: its wavelets and its matrix by closed forms and other integrators."""
+"""Spectral matching in time: wavelets and matrix against closed forms and other integrators."""
 
 from functools import cache
 
@@ -51,7 +51,7 @@ def pseudo_spectrum(samples, step, periods, damping):
 @pytest.mark.parametrize("period", [0.1, 0.5, 2.0])
 @pytest.mark.parametrize("damping", [0.01, 0.05, 0.3])
 def test_wavelet_is_tapered_cosine_without_its_mean(period, damping):
-    """A Gaussian takes the integral of the cosine away; both are known in closed form."""
+    """A Gaussian cancels the integral of the cosine; both are known in closed form."""
     share = np.sqrt(1.0 - damping**2)
     frequency = 2.0 * np.pi / period * share
     lead = np.arctan(share / damping) / frequency
@@ -77,7 +77,7 @@ def test_wavelet_is_tapered_cosine_without_its_mean(period, damping):
 @pytest.mark.parametrize("peak_time", [0.0, 0.3, 2.0, 15.0, 29.5, 31.0])
 @pytest.mark.parametrize("period", [0.05, 0.7, 3.0, 10.0])
 def test_wavelets_leave_no_permanent_ground_displacement(peak_time, period):
-    """Straight lines through the samples: their integrals are known exactly."""
+    """Linear interpolation of samples has exact integrals."""
     one = wavelet_at(peak_time, period, 0.05, time_step=STEP, count=COUNT)
     samples = np.zeros(COUNT)
     samples[one.samples] = one.values
@@ -85,7 +85,7 @@ def test_wavelets_leave_no_permanent_ground_displacement(peak_time, period):
     assert 0.5 < np.abs(samples).max() < 2.5
     acceleration = integrate.cumulative_trapezoid(samples, dx=STEP, initial=0.0)
     assert abs(acceleration[-1]) < 1e-12
-    # the displacement of a hat at time t is its area times what is left of the motion
+    # the displacement of a hat at time t is its area times the remaining time
     assert abs(((LENGTH - np.arange(COUNT) * STEP) * samples).sum() * STEP) < 1e-10
     path = rf.GroundMotion.from_arrays((samples, "m/s^2"), f"{STEP} s")
     moved = rf.measures.velocity_and_displacement(path)
@@ -108,8 +108,8 @@ def test_oscillator_peaks_match_response_spectrum(damping):
         exact = exact_history(samples, STEP, period, damping)
         assert np.abs(histories[place, : exact.size] - exact).max() < 1e-8 * np.abs(exact).max()
     peaks = oscillators.peaks(samples, histories)
-    made = rf.GroundMotion.from_arrays((samples, "m/s^2"), f"{STEP} s").si.horizontal
-    displacement = spectral_peaks(made, PERIODS, damping)[:, 0]
+    signal = rf.GroundMotion.from_arrays((samples, "m/s^2"), f"{STEP} s").si.horizontal
+    displacement = spectral_peaks(signal, PERIODS, damping)[:, 0]
     np.testing.assert_allclose(
         peaks.spectrum, (2.0 * np.pi / PERIODS) ** 2 * displacement, rtol=1e-4
     )
@@ -127,14 +127,14 @@ def test_oscillator_peak_after_end_of_motion_is_found():
     oscillators = Oscillators(np.array([3.0]), 0.05, STEP)
     peaks = oscillators.peaks(samples, oscillators.histories(samples))
     assert peaks.times[0] > 0.6
-    made = rf.GroundMotion.from_arrays((samples, "m/s^2"), f"{STEP} s").si.horizontal
-    expected = spectral_peaks(made, oscillators.periods, 0.05)[0, 0] * (2.0 * np.pi / 3.0) ** 2
+    signal = rf.GroundMotion.from_arrays((samples, "m/s^2"), f"{STEP} s").si.horizontal
+    expected = spectral_peaks(signal, oscillators.periods, 0.05)[0, 0] * (2.0 * np.pi / 3.0) ** 2
     assert peaks.spectrum[0] == pytest.approx(expected, rel=1e-6)
 
 
 @pytest.mark.parametrize("damping", [0.01, 0.05, 0.4])
 def test_sample_influences_reproduce_response(damping):
-    """Of every sample at once: a motion's response is the sum over its samples."""
+    """The response to a motion is the sum of the responses to its samples."""
     samples = noise(4)
     oscillators = Oscillators(PERIODS, damping, STEP)
     times = (np.linspace(200, 3100, PERIODS.size).round() + 0.37) * STEP
@@ -157,13 +157,13 @@ def test_wavelet_effects_match_finite_differences():
     oscillators = Oscillators(PERIODS, damping, STEP)
     peaks = oscillators.peaks(samples, oscillators.histories(samples))
     targets = np.full(PERIODS.size, 3.0)
-    made = make_adjustment(oscillators, peaks, targets, COUNT)
-    assert made.effects.shape == (peaks.values.size, peaks.values.size)
+    adjustment = make_adjustment(oscillators, peaks, targets, COUNT)
+    assert adjustment.effects.shape == (peaks.values.size, peaks.values.size)
     small = 1e-3
 
     @cache
     def response(oscillator, column=None):
-        changed = samples if column is None else samples + small * made.wavelets[:, column]
+        changed = samples if column is None else samples + small * adjustment.wavelets[:, column]
         return exact_history(changed, STEP, PERIODS[oscillator], damping, parts)
 
     for column in range(0, peaks.values.size, 9):
@@ -172,19 +172,19 @@ def test_wavelet_effects_match_finite_differences():
             at = np.rint(peaks.times[row] * parts / STEP).astype(int)
             change = response(which, column)[at] - response(which)[at]
             slope = np.sign(peaks.values[row]) * change / small / 3.0
-            assert made.effects[row, column] == pytest.approx(slope, abs=2e-3)
+            assert adjustment.effects[row, column] == pytest.approx(slope, abs=2e-3)
 
 
 def test_wavelet_amplitude_brings_peak_to_target():
-    """Linear theory is exact as long as the times do not change: one oscillator, one wavelet."""
+    """Linear theory is exact for one oscillator and one wavelet while peak times do not change."""
     samples = noise(6)
     oscillators = Oscillators(np.array([0.5]), 0.05, STEP)
     histories = oscillators.histories(samples)
     peaks = oscillators.peaks(samples, histories)
     target = np.array([1.01 * peaks.spectrum[0]])
     alone = OscillatorPeaks(*(values[:1] for values in peaks))
-    made = make_adjustment(oscillators, alone, target, COUNT)
-    changed = samples + made.wavelets @ made.amplitudes(1e-12)
+    adjustment = make_adjustment(oscillators, alone, target, COUNT)
+    changed = samples + adjustment.wavelets @ adjustment.amplitudes(1e-12)
     at = np.interp(
         peaks.times[0] / STEP,
         np.arange(histories.shape[1]),
@@ -194,13 +194,13 @@ def test_wavelet_amplitude_brings_peak_to_target():
 
 
 def test_second_peak_does_not_exceed_target():
-    """Two peaks of one oscillator: the greatest goes to the target, the other not beyond it."""
+    """Of two peaks of one oscillator the greatest matches the target, the other stays below it."""
     samples = noise(7)
     oscillators = Oscillators(np.array([0.5]), 0.05, STEP)
     peaks = oscillators.peaks(samples, oscillators.histories(samples))
     assert peaks.values.size > 1
-    made = make_adjustment(oscillators, peaks, np.array([0.9 * peaks.spectrum[0]]), COUNT)
-    found = made.amplitudes(1e-8)
-    left = made.misfits - made.effects @ found
+    adjustment = make_adjustment(oscillators, peaks, np.array([0.9 * peaks.spectrum[0]]), COUNT)
+    found = adjustment.amplitudes(1e-8)
+    left = adjustment.misfits - adjustment.effects @ found
     assert abs(left[0]) < 1e-3
     assert (left > -0.006).all()

@@ -1,4 +1,4 @@
-"""Maps of overturning on rigid ground, small rotations, beside closed forms."""
+"""Maps of overturning on rigid ground at small rotations against closed forms."""
 
 import math
 
@@ -22,7 +22,7 @@ UPLIFT = GRAVITY * THETA
 LONG = f"{60.0 / P!r} s"
 
 
-@pytest.mark.long  # the plain command finds one of its gaps by critical_scale
+@pytest.mark.long  # the short tests find one of its gaps by critical_scale
 def test_the_gap_of_zhang_and_makris():
     """Blocks that overturn after an impact, stand, and overturn without one."""
     ratios = np.array(list(BANDS))
@@ -57,10 +57,10 @@ def test_the_gap_of_zhang_and_makris():
 def test_relative_amplitudes_use_peak_ground_acceleration():
     """A tenth of a sine has its peak at sin(0.2 pi) of its amplitude."""
     levels = np.array([1.0, 3.0]) * UPLIFT
-    given = {"amplitude": (levels, "m/s^2"), "frequency": ([1.0, 2.0], "Hz"), "progress": False}
+    axes = {"amplitude": (levels, "m/s^2"), "frequency": ([1.0, 2.0], "Hz"), "progress": False}
     block = rigid_block(THETA, restitution=0.9, rotation="small")
     short = rf.GroundMotion.sine_pulse("1 m/s^2", "1 Hz", cycles=0.1)
-    found = rf.overturning_map(block, short, **given)
+    found = rf.overturning_map(block, short, **axes)
     expected = math.sin(0.2 * math.pi) * np.array([1.0, 3.0])
     assert found.relative_peak_ground_acceleration.values == pytest.approx(expected, rel=1e-9)
 
@@ -68,7 +68,7 @@ def test_relative_amplitudes_use_peak_ground_acceleration():
         cycles = 0.1 * frequency.m_as("Hz")
         return rf.GroundMotion.sine_pulse(amplitude, frequency, cycles=cycles)
 
-    found = rf.overturning_map(block, longer, **given)  # no number of an amplitude
+    found = rf.overturning_map(block, longer, **axes)  # any function of an amplitude
     assert "relative_peak_ground_acceleration" not in found.coords
     assert rf.plot.overturning_map(found).get_ylabel().startswith("amplitude")
 
@@ -98,7 +98,7 @@ def test_rectangular_pulses():
 
 
 def test_overturning_spectrum_matches_closed_form_for_all_sizes():
-    """Amplitude over g theta depends on the pulse's frequency over p alone."""
+    """Amplitude over g theta depends only on the pulse's frequency over p."""
     scale = rf.overturning_spectrum(
         rigid_block(THETA, rotation="small"),
         rf.GroundMotion.sine_pulse("1 m/s^2", "1 Hz", 0.5),

@@ -18,7 +18,7 @@ RULES = ("contact-state", "leading-corner", "centre")
 STEP = 0.005
 
 
-def worst(found, expected):
+def relative_error(found, expected):
     """Return the largest difference over the largest expected value."""
     return np.abs(found - expected).max() / np.abs(expected).max()
 
@@ -98,7 +98,7 @@ def test_rocking_period(rotation):
 
 @pytest.mark.parametrize("stiffness", ["beta", "N/m"])
 def test_stiffness_and_frequency_ratio_are_equivalent(stiffness):
-    given = (
+    parameters = (
         {"frequency_ratio": GOLDEN.beta, "damping_ratio": 0.1}
         if stiffness == "beta"
         else {
@@ -107,14 +107,14 @@ def test_stiffness_and_frequency_ratio_are_equivalent(stiffness):
         }
     )
     block = rf.Block.from_size(radius="5 m", slenderness=4, mass="50 t")
-    response = rf.System(block, rf.TwoSpringSupport(**given), gravity="9.81 m/s^2").simulate(
+    response = rf.System(block, rf.TwoSpringSupport(**parameters), gravity="9.81 m/s^2").simulate(
         duration="1 s", initial=rf.InitialState(vertical_displacement="1 mm")
     )
     damped = 0.1 * GOLDEN.omega_v
     turning = math.sqrt(GOLDEN.omega_v**2 - damped**2)
     t = response.time.values
     expected = np.exp(-damped * t) * (np.cos(turning * t) + damped / turning * np.sin(turning * t))
-    assert worst(response.vertical_displacement.values, 1e-3 * expected) < 1e-6
+    assert relative_error(response.vertical_displacement.values, 1e-3 * expected) < 1e-6
 
 
 # exact recurrences -----------------------------------------------------------------------------
@@ -131,22 +131,22 @@ def test_vertical_motion_is_a_damped_oscillator(beta, xi):
     )
     response = pads.system().simulate(motion, accuracy="reference")
     y, rate = oscillator(pads.omega_v, 2.0 * xi * pads.omega_v, -upwards, STEP)
-    assert worst(response.vertical_displacement.values, y) < 1e-9
-    assert worst(response.vertical_velocity.values, rate) < 1e-9
+    assert relative_error(response.vertical_displacement.values, y) < 1e-9
+    assert relative_error(response.vertical_velocity.values, rate) < 1e-9
     assert (response.rotation.values == 0.0).all()
     assert (response.contact_state.values == 0).all()
     assert (response.vertical_ground_acceleration.values == upwards).all()
     reaction = pads.mass * (pads.k * (pads.delta - y) - pads.c * rate)
     for name in ("left_reaction", "right_reaction"):
-        assert worst(response[name].values, reaction) < 1e-9
+        assert relative_error(response[name].values, reaction) < 1e-9
 
 
 @pytest.mark.parametrize("rule", RULES)
 @pytest.mark.parametrize("rotation", ["small", "finite"])
 @pytest.mark.parametrize(("slenderness", "xi"), [(4.0, 0.1), (2.0, 0.0), (6.0, 0.4)])
 def test_weak_horizontal_motion_is_a_damped_oscillator(slenderness, xi, rotation, rule):
-    # what is left out is of second order in the rotation, and of first order where the
-    # leading corner is held (x' = h + b |a|): the motion is so weak that neither shows
+    # the neglected terms are of second order in the rotation, and of first order where the
+    # leading corner is held (x' = h + b |a|): both are negligible in so weak a motion
     pads = Pads(slenderness=slenderness, damping_ratio=xi)
     across = rough_record(401, STEP, 1e-5 if rule == "leading-corner" else 1e-4, seed=2)
     motion = rf.GroundMotion.from_arrays((across, "m/s^2"), f"{STEP} s")
@@ -154,14 +154,14 @@ def test_weak_horizontal_motion_is_a_damped_oscillator(slenderness, xi, rotation
     force = -pads.h * across / pads.rocking_inertia
     angle, rate = oscillator(pads.omega_r, pads.rocking_damping, force, STEP)
     assert 1e-9 < np.abs(angle).max() < 1e-6
-    assert worst(response.rotation.values, angle) < 1e-8
-    assert worst(response.angular_velocity.values, rate) < 1e-8
-    assert worst(response.horizontal_displacement.values, pads.h * angle) < 1e-6
+    assert relative_error(response.rotation.values, angle) < 1e-8
+    assert relative_error(response.angular_velocity.values, rate) < 1e-8
+    assert relative_error(response.horizontal_displacement.values, pads.h * angle) < 1e-6
     assert (response.contact_state.values == 0).all()
     assert (response.ground_acceleration.values == across).all()
     tilt = pads.k * pads.b * angle + pads.c * pads.b * rate
     difference = response.right_reaction.values - response.left_reaction.values
-    assert worst(difference, 2.0 * pads.mass * tilt) < 1e-6
+    assert relative_error(difference, 2.0 * pads.mass * tilt) < 1e-6
     assert response.peak_rotation.item() >= np.abs(response.rotation.values).max()
 
 
@@ -176,15 +176,15 @@ def test_motion_on_both_axes_superposes_at_small_rotation():
     y, _ = oscillator(pads.omega_v, 2.0 * pads.c, -upwards, STEP)
     force = -pads.h * across / pads.rocking_inertia
     angle, _ = oscillator(pads.omega_r, pads.rocking_damping, force, STEP)
-    assert worst(response.vertical_displacement.values, y) < 1e-6
-    assert worst(response.rotation.values, angle) < 1e-6
+    assert relative_error(response.vertical_displacement.values, y) < 1e-6
+    assert relative_error(response.rotation.values, angle) < 1e-6
 
 
 def test_free_vibration_equals_motion_padded_with_zeros():
     pads = Pads(damping_ratio=0.02)
     upwards = np.zeros(401)
     upwards[:41] = rough_record(41, STEP, 0.5, seed=5)
-    whole = rf.GroundMotion.from_arrays(
+    combined = rf.GroundMotion.from_arrays(
         (np.zeros(401), "m/s^2"), f"{STEP} s", vertical=(upwards, "m/s^2")
     )
     short = rf.GroundMotion.from_arrays(
@@ -192,13 +192,13 @@ def test_free_vibration_equals_motion_padded_with_zeros():
     )
     expected, _ = oscillator(pads.omega_v, 2.0 * pads.c, -upwards, STEP)
     for response in (
-        pads.system().simulate(whole, accuracy="reference"),
+        pads.system().simulate(combined, accuracy="reference"),
         pads.system().simulate(short, duration="2 s", accuracy="reference"),
         pads.system().simulate(short, free_vibration="1.8 s", accuracy="reference"),
     ):
         assert response.sizes["time"] == 401
         assert response.time.values[-1] == pytest.approx(2.0, abs=1e-12)
-        assert worst(response.vertical_displacement.values, expected) < 1e-9
+        assert relative_error(response.vertical_displacement.values, expected) < 1e-9
 
 
 # statics -------------------------------------------------------------------------------------

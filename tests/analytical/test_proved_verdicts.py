@@ -1,4 +1,4 @@
-"""Verdicts that are proved, and what runs say at scales beside theirs."""
+"""Proved verdicts, and runs at neighbouring scales."""
 
 import json
 
@@ -35,7 +35,7 @@ CASES = (
 def system(slenderness, radius=5.0, eccentricity=0.0, *, rounded=False):
     width = 2.0 * radius / np.hypot(1.0, slenderness)
     height = slenderness * width
-    if rounded:  # as the later ten were proved
+    if rounded:  # the ten later cases were proved with rounded numbers
         width, height = round(width, 6), round(slenderness * round(width, 6), 6)
     block = rf.Block(
         width=f"{width} m", height=f"{height} m", mass="1 t",
@@ -67,7 +67,7 @@ def test_proofs_on_both_sides_of_critical_scale_agree_with_runs(
 ):
     plain = radius == 5.0 and not (up or off)
     scene, motion = system(h_b, radius, off, rounded=not plain), half_sine(seconds, up)
-    standard = 1e-9 if off == 0.03 else 1e-12  # there it is off by 1e-11 to 1e-9
+    standard = 1e-9 if off == 0.03 else 1e-12  # there its error is 1e-11 to 1e-9
     assert rf.prove(scene, motion, scale=low).verdict == "safe for ever"
     assert rf.prove(scene, motion, scale=high).verdict == "overturns"
     for accuracy, away in (("reference", 1e-13), ("standard", standard), ("fast", FAST)):
@@ -88,7 +88,7 @@ def test_a_block_that_bounces_to_rest_is_proved_safe():
 
 
 def test_ground_falling_away_leaves_verdict_undecided():
-    """Both corners are unloaded at one instant, not at a verge."""
+    """Both corners are unloaded at one instant, but not at a threshold."""
     fall = np.array([0.0, -5.0, -12.0, -3.0, 0.0, 0.0])
     motion = rf.GroundMotion.from_arrays((np.zeros(6), "m/s^2"), "0.1 s", vertical=(fall, "m/s^2"))
     assert rf.prove(system(4), motion).reason == "the ground falls away under the block"
@@ -144,19 +144,19 @@ def test_proof_holds_for_restitution_tolerance():
 def test_set_around_critical_scale_splits_into_safe_and_overturning_parts():
     scene, motion = system(4), half_sine()
     at = 0.5 * (CASES[0][-2] + CASES[0][-1])
-    whole = rf.prove(scene, motion, scale=at, scale_tolerance=2e-3, parts=1)
-    assert (whole.parts, whole.safe_share, whole.overturning_share) == (1, 0.0, 0.0)
+    undivided = rf.prove(scene, motion, scale=at, scale_tolerance=2e-3, parts=1)
+    assert (undivided.parts, undivided.safe_share, undivided.overturning_share) == (1, 0.0, 0.0)
     found = rf.prove(scene, motion, scale=at, scale_tolerance=2e-3, parts=12)
-    assert not whole.decided
+    assert not undivided.decided
     assert not found.decided
     assert 1 < found.parts <= 12
     assert 0.45 < found.safe_share <= 0.5
     assert 0.45 < found.overturning_share <= 0.5
     assert "proved safe for ever and" in str(found)
     for shift, verdict in ((-1e-3, "safe for ever"), (1e-3, "overturns")):
-        beside = rf.prove(scene, motion, scale=at + shift, scale_tolerance=0.9e-3, parts=64)
-        assert beside.verdict == verdict
-        assert 1.0 in (beside.safe_share, beside.overturning_share)
+        nearby = rf.prove(scene, motion, scale=at + shift, scale_tolerance=0.9e-3, parts=64)
+        assert nearby.verdict == verdict
+        assert 1.0 in (nearby.safe_share, nearby.overturning_share)
 
 
 @pytest.mark.parametrize(("slenderness", "scale"), [(4, 0.5), (4, 0.577), (6, 0.34), (6, 0.38)])
@@ -193,9 +193,9 @@ def test_a_set_of_angles_scales_and_restitutions_has_the_verdict_of_its_middle(s
 )
 def test_unsupported_scenes_are_refused(change, words):
     block = rf.Block(width="1 m", height="4 m", mass="1 t")
-    scene, motion, *given = change(block, half_sine())
+    scene, motion, *options = change(block, half_sine())
     with pytest.raises(ComponentError, match=words):
-        rf.prove(scene, motion, **(given[0] if given else {}))
+        rf.prove(scene, motion, **(options[0] if options else {}))
 
 
 def test_critical_scale_is_bracketed_from_any_start():

@@ -24,7 +24,7 @@ EXACT = 1e-12
 
 @dataclass(frozen=True)
 class Case:
-    """A motion, and the displacement of which its acceleration is the second derivative."""
+    """A motion and the displacement whose second derivative is its acceleration."""
 
     motion: GroundMotion
     displacement: sp.Expr
@@ -129,7 +129,7 @@ def case(request):
 
 def test_every_pulse_has_a_case():
     tested = {case.motion.recipe["constructor"] for case in CASES.values()}
-    missing = set(PULSES) - tested - {"double_impulse"}  # which is below
+    missing = set(PULSES) - tested - {"double_impulse"}  # it is tested below
     assert not missing, f"add the paths of {missing} to CASES"
 
 
@@ -220,7 +220,7 @@ def test_phase_of_type_c_solves_its_equation(order):
     assert math.sin(half) - half * math.cos(half) == pytest.approx(0.0, abs=1e-15 * half**2)
 
 
-# the printed forms -------------------------------------------------------------------------------
+# printed formulas -------------------------------------------------------------------------------
 
 
 @pytest.mark.parametrize(("cycles", "degrees"), ENVELOPED)

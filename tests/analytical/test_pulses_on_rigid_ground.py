@@ -22,11 +22,11 @@ TOPPLED = 2
 
 
 def shaken(amplitude, ratio, cycles, restitution=None, theta=THETA, motion=None):
-    """Run the linearised block until it has fallen flat or come back.
+    """Run the linearised block until it has fallen flat or returned.
 
     `amplitude` is that of the ground over g theta, `ratio` the pulse's angular
-    frequency over p. The run goes on beyond theta: the second half of a sine
-    may still bring the block back.
+    frequency over p. The run continues beyond theta: the second half of a sine
+    may still return the block.
     """
     system = rigid_block(theta, restitution=restitution, rotation="small")
     if motion is None:
@@ -84,7 +84,7 @@ def test_half_sine(ratio, printed):
 
 @pytest.mark.parametrize("ratio", [1, 4, 10])
 def test_half_sine_from_samples(ratio):
-    """Straight lines between 20 001 samples: the pulse is that much weaker, 1.7e-9."""
+    """Linear interpolation of 20 001 samples makes the pulse weaker by 1.7e-9."""
     threshold = half_sine_threshold(ratio)
     for factor, expected in ((1.0 + 1e-6, True), (1.0 - 1e-6, False)):
         motion = sampled_half_sine(threshold * factor, ratio, 20001)
@@ -153,7 +153,7 @@ RIGID_LIMIT = [
     # H/B, R0 [m], impacts, time of overturning [s], peak alpha/theta
     (2, 1, 1, 1.30946, None),
     (2, 5, None, None, 0.26441),
-    # found as 0.12572 elsewhere; an independent eighth-order integration gives 0.1257277
+    # published as 0.12572; an independent eighth-order integration gives 0.1257277
     (2, 10, None, None, 0.12573),
     (4, 1, 0, 0.40662, None),
     (4, 5, 1, 2.69659, None),
@@ -198,7 +198,7 @@ def test_peak_before_impact_of_nearly_overturning_block():
 
 
 def just_uplifting(ground, excess, accuracy):
-    """Return the response to a sine whose largest acceleration exceeds that of uplift a little."""
+    """Return the response to a sine that slightly exceeds the uplift acceleration."""
     block = rf.Block(width="1 m", height="4 m", mass="1 t")
     motion = rf.GroundMotion.sine_pulse(f"{0.25 * (1.0 + excess)!r} g", "1 Hz", 0.7)
     signal = motion.si.horizontal
@@ -227,7 +227,7 @@ def test_no_uplift_at_peak_below_threshold():
 
 
 def test_uplift_at_joint_peak_of_horizontal_and_vertical_motion():
-    # both peak at 1/4 s; what the block resists falls by tan(theta) of what pushes it upwards
+    # both peak at 1/4 s; upward acceleration reduces the resistance by the factor tan(theta)
     block = rf.Block(width="1 m", height="4 m", mass="1 t")
     excess = 1e-8
     across = rf.GroundMotion.sine_pulse(f"{0.2 * (1.0 + excess)!r} g", "1 Hz", 0.45)

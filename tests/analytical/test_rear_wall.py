@@ -19,7 +19,7 @@ GRAVITY = "9.81 m/s^2"
 
 
 def released(share, wall=None, **options):
-    """Let a façade go at a share of its overturning angle."""
+    """Release a façade from a share of its overturning angle."""
     system = rf.System(FACADE, wall or rf.RearWall(), gravity=GRAVITY, **options)
     rotation = share * system.setting.overturning_rotations[0]
     return system, system.simulate(
@@ -43,7 +43,7 @@ def test_impacts_of_three_metre_facade():
     lost = run.impact_energy[-1] / (run.kinetic_energy + run.potential_energy)[0]
     assert float(lost) == pytest.approx(1.0, rel=1e-9)
     assert not bool(run.overturned)
-    # the wall, not friction, bears the impulses
+    # the wall, not friction, takes the impulses
     assert float(run.peak_impulsive_friction_demand) == 0.0
 
 
@@ -54,10 +54,10 @@ def test_the_impulse_of_base_and_wall_is_the_change_of_momentum():
     )
     (struck, *_) = np.flatnonzero(run.event_kind.to_numpy() == 2)
     jump = (run.angular_velocity_after - run.angular_velocity_before)[struck].item()
-    # about the corner that stays, the centre of mass at half the height moves across
+    # about the pivot corner, the centre of mass at half the height moves horizontally
     impulse = run.event_horizontal_impulse[struck].item()
     assert impulse == pytest.approx(1600.0 * 1.5 * jump, rel=1e-9)
-    # a share of the impulse that friction alone could not transfer
+    # a share of the impulse that friction alone could not transmit
     assert abs(impulse) > 5.0 * abs(run.event_vertical_impulse[struck].item())
     assert "with that of a stiff wall" in run.event_horizontal_impulse.long_name
 
@@ -88,7 +88,7 @@ def test_newton_law_and_numeric_restitution():
 
 
 @pytest.mark.parametrize(
-    ("given", "words"),
+    ("arguments", "words"),
     [
         ({"restitution": "newton"}, "needs wall_restitution"),
         ({"wall_restitution": 0.3}, "goes with restitution"),
@@ -96,9 +96,9 @@ def test_newton_law_and_numeric_restitution():
         ({"side": "behind"}, "left"),
     ],
 )
-def test_invalid_wall_is_refused(given, words):
+def test_invalid_wall_is_refused(arguments, words):
     with pytest.raises(RockframeError, match=words):
-        rf.RearWall(**given)
+        rf.RearWall(**arguments)
 
 
 def test_wall_refuses_incompatible_parts_and_states():
@@ -162,7 +162,7 @@ def test_wall_changes_nothing_before_first_impact():
     assert 0.0 < float(before.first_uplift_time) < first
     same = before.time < first
     np.testing.assert_array_equal(before.rotation[same], free.rotation[: int(same.sum())])
-    # the other way round the wall holds it
+    # in the other direction the wall holds the block
     held = rf.System(FACADE, rf.RearWall(side="right")).simulate(PULSE, duration="0.4 s")
     assert float(held.peak_rotation) == 0.0
 
@@ -177,7 +177,7 @@ def test_reactions_of_block_leaning_on_wall():
     np.testing.assert_allclose(run.base_shear, 1600.0 * 2.0 - thrust, rtol=1e-12)
     np.testing.assert_allclose(run.left_reaction, 1600.0 * 9.81, rtol=1e-12)
     np.testing.assert_allclose(run.right_reaction, 0.0, atol=1e-9)
-    # all of it bears at the rear corner, whatever the wall takes at the top
+    # the rear corner bears the whole weight, whatever the wall takes at the top
     np.testing.assert_allclose(run.base_overturning_moment, -1600.0 * 9.81 * 0.15, rtol=1e-12)
 
 
@@ -197,8 +197,8 @@ def test_wall_in_statics_studies_figures_and_files(tmp_path):
         restitution=[-0.4, -0.1], accuracy="fast", progress=False,
     )  # fmt: skip
     assert runs.peak_rotation.shape == (2, 1)
-    given = rf.System(FACADE, rf.RearWall(restitution=-0.2)).assembly
-    assert [name for name, _ in parameters(given)][-1] == "restitution of the wall"
+    assembly = rf.System(FACADE, rf.RearWall(restitution=-0.2)).assembly
+    assert [name for name, _ in parameters(assembly)][-1] == "restitution of the wall"
     described = json.loads(json.dumps(system.to_dict()))
     assert rf.System.from_dict(described) == system
     run = system.simulate(PULSE, free_vibration="1 s")

@@ -1,4 +1,4 @@
-"""Sliding and rocking of the example of a scene of one's own, against closed forms."""
+"""Sliding and rocking of the example of a user-defined scene against closed forms."""
 
 import math
 
@@ -21,7 +21,7 @@ HISTORIES = (
 
 @pytest.fixture(scope="module", autouse=True)
 def own():
-    """Return the module of the example, its scene registered; compiled it gives the same."""
+    """Return the module of the example with its scene registered, in plain Python."""
     with example(SCENE_FILE) as module, plain_python():
         yield module
 
@@ -31,7 +31,7 @@ def standing(own, block, friction, kinetic=None):
 
 
 def noise(sign=1.0):
-    """A rough motion, or its mirror image."""
+    """Return a motion with content at all frequencies, or its mirror image."""
     rng = np.random.default_rng(12)
     across, upwards = (np.convolve(rng.normal(size=150), np.ones(5) / 5, "same") for _ in "xy")
     return rf.GroundMotion.from_arrays(
@@ -93,7 +93,7 @@ def test_high_friction_gives_housner_block(own, friction):
 @pytest.mark.parametrize("share", [0.0, 0.3, 0.9])
 @pytest.mark.parametrize("side", [1.0, -1.0])
 def test_impacts_with_little_friction(own, slenderness, share, side):
-    """A corner that strikes slips where friction is below 3 t/(4 + t^2)."""
+    """A landing corner slips if friction is below 3 t/(4 + t^2)."""
     t = 1.0 / slenderness
     friction = share * 3.0 * t / (4.0 + t * t) or 1e-12
     block = rf.Block(width="1 m", height=f"{slenderness} m", mass="1 t")
@@ -142,7 +142,7 @@ def test_energy_balances_and_friction_bounds_the_shear(own, frictions):
 
 @pytest.mark.parametrize("friction", [0.02, 0.15])
 def test_released_block_slips_while_rocking(own, friction):
-    """Its centre of mass moves only as far as friction lets it."""
+    """The centre of mass moves only as far as friction allows."""
     response = standing(own, SLENDER, friction).simulate(
         initial=rf.InitialState(rotation="0.1 rad"), duration="6 s", accuracy="reference",
         outputs=["energy", "acceleration", "reaction"],

@@ -51,7 +51,7 @@ def standing(block, friction, kinetic=None, **options):
 
 
 def noise(sign=1.0, size=5.0):
-    """A rough motion, or its mirror image."""
+    """Return a motion with content at all frequencies, or its mirror image."""
     rng = np.random.default_rng(12)
     across, upwards = (np.convolve(rng.normal(size=150), np.ones(5) / 5, "same") for _ in "xy")
     return rf.GroundMotion.from_arrays(
@@ -127,7 +127,7 @@ def test_infinite_friction_gives_housner_block(restitution):
 
 
 def test_frictionless_block_stays_in_place_as_ground_moves():
-    """Its centre of mass moves as far as the ground, the other way, and it does not rock."""
+    """The centre of mass moves opposite to the ground by the same distance, without rocking."""
     pulse = rf.GroundMotion.sine_pulse(amplitude="6 m/s^2", frequency="1 Hz")
     run = standing(SLENDER, 0.0).simulate(pulse, accuracy="reference")
     period = 1.0
@@ -189,23 +189,23 @@ def test_impacts_after_rocking_about_a_held_corner(slenderness, share, side):
 
 
 def test_slip_that_stops_within_impact_reverses_or_sticks():
-    """What comes out of the impulse taken in a thousand parts."""
+    """The result equals that of the impulse in a thousand parts."""
     rng = np.random.default_rng(4)
     system = standing(SLENDER, 0.1).assembly.model.system
     reversed_ones = 0
     for _ in range(40):
         friction, slip, sinking = rng.uniform(0.02, 0.5), rng.uniform(-0.3, 0.3), -rng.uniform(0, 1)
         one = system._replace(impulsive=friction)
-        beside, above = rng.choice([-0.5, 0.5]), 2.0
-        along, normal = one.impact_impulses(beside, above, 1.0, slip, sinking)
+        ahead, above = rng.choice([-0.5, 0.5]), 2.0
+        along, normal = one.impact_impulses(ahead, above, 1.0, slip, sinking)
         u, n, x, y, start = slip, sinking, 0.0, 0.0, math.copysign(1.0, slip)
         part = normal / 20000.0
         while n < 0.0:
-            held = -u / part + beside * above / one.inertia
+            held = -u / part + ahead * above / one.inertia
             held /= 1.0 + above * above / one.inertia
             ratio = min(max(held, -friction), friction)
-            u += part * (ratio * (1.0 + above**2 / one.inertia) - beside * above / one.inertia)
-            n += part * (1.0 + beside**2 / one.inertia - ratio * beside * above / one.inertia)
+            u += part * (ratio * (1.0 + above**2 / one.inertia) - ahead * above / one.inertia)
+            n += part * (1.0 + ahead**2 / one.inertia - ratio * ahead * above / one.inertia)
             x, y = x + ratio * part, y + part
         assert (x, y) == pytest.approx((along, normal), abs=2e-4 * (1.0 + normal))
         reversed_ones += abs(u) > 1e-3 and u * start < 0.0
@@ -223,7 +223,7 @@ def test_sticking_impacts_match_housner_for_any_friction():
 
 @pytest.mark.parametrize("side", [1.0, -1.0])
 def test_tipping_guard_prevails_over_rounding(side):
-    """Of kinetic friction b/h the centre of pressure is on the corner, to rounding."""
+    """For kinetic friction b/h the centre of pressure is at the corner, up to rounding."""
     system = standing(SLENDER, 0.9, 0.25).assembly.model.system
     system = system._replace(kinetic=system.kinetic * (1.0 - 1e-15))
     state, memory = np.zeros(2 * DOF), np.zeros(len(SLIDE_MEMORY))
@@ -237,7 +237,7 @@ def test_tipping_guard_prevails_over_rounding(side):
 
 @pytest.mark.parametrize("slips", [HELD, TO_RIGHT, TO_LEFT])
 def test_corner_separates_despite_rounding_of_its_force(slips):
-    """Where its guard has found it, a force of the last bit neither holds it nor presses it."""
+    """At its event, a force of one last bit neither holds nor presses the corner."""
     friction = math.inf if slips == HELD else 0.3
     system = standing(SLENDER, 0.3).assembly.model.system
     system = system._replace(static=friction)
@@ -327,9 +327,9 @@ def test_block_sliding_down_slope_by_its_weight_warns():
 
 
 def test_inconsistent_friction_and_kinematics_are_refused():
-    for given in ({"kinetic_friction": 0.3}, {"friction": 0.2, "kinetic_friction": 0.3}):
+    for options in ({"kinetic_friction": 0.3}, {"friction": 0.2, "kinetic_friction": 0.3}):
         with pytest.raises(ComponentError, match="kinetic_friction"):
-            rf.RigidGround(**given)
+            rf.RigidGround(**options)
     with pytest.raises(AssemblyError, match="sliding='checked'"):
         standing(SLENDER, 0.3, rotation="small")
 
@@ -343,6 +343,8 @@ def test_system_survives_result_and_run_continues(tmp_path):
     checked = standing(SLENDER, 0.26, sliding="checked")
     assert rf.System.from_dict(checked.to_dict()) == checked
     assert "sliding='checked'" in repr(checked)
-    whole = system.simulate(noise(), free_vibration="1 s", accuracy="reference")
-    rest = system.simulate(initial=run, duration="1 s", accuracy="reference")
-    assert float(rest.residual_slip) == pytest.approx(float(whole.residual_slip), abs=1e-9)
+    continuous = system.simulate(noise(), free_vibration="1 s", accuracy="reference")
+    continued = system.simulate(initial=run, duration="1 s", accuracy="reference")
+    assert float(continued.residual_slip) == pytest.approx(
+        float(continuous.residual_slip), abs=1e-9
+    )

@@ -1,4 +1,4 @@
-"""A sliding contact is the limit of dry friction, keeps its level, dissipates, and has no side.
+"""A sliding contact is the limit of dry friction, stays level, dissipates, and is symmetric.
 
 Equations eq-sliding-contact, eq-partial-hold and eq-leaving-into-flight of the theory manual.
 """
@@ -66,14 +66,14 @@ def bed(restraint=0):
 
 
 def slides(model, modes):
-    """Tell in which modes an end of the base slides."""
+    """Return in which modes an end of the base slides."""
     return np.array([model.system.part.mode_of(int(mode)).slides for mode in modes])
 
 
 def drop(model, sign=1.0, speed=-0.05, duration=TIME):
-    """Let the block down on its lower corner, turning, without sway."""
+    """Drop the rotating block on its lower corner, without sway."""
     y = DELTA * (1.0 + 1e-9) - H * (1.0 - np.cos(TILT)) + B * np.sin(TILT)
-    # the lower corner comes down at `speed`
+    # the lower corner lands at `speed`
     rate = speed - lever(TILT, -1.0) * SPIN
     return integrate(
         model,
@@ -86,7 +86,7 @@ def drop(model, sign=1.0, speed=-0.05, duration=TIME):
     )
 
 
-def by_friction(start, coefficient, times):
+def dry_friction_reference(start, coefficient, times):
     """Integrate the corner on its pad against dry friction while it slips."""
 
     def rates(t, z):
@@ -114,10 +114,10 @@ def test_sliding_contact_is_the_limit_of_dry_friction():
     times = run.time[sliding] - run.events.time[landing]
     differences = []
     for coefficient in (40.0, 160.0, 640.0):
-        z = by_friction(run.events.state_after[landing], coefficient, times)
+        z = dry_friction_reference(run.events.state_after[landing], coefficient, times)
         gap = np.abs(z[[0, 3, 5]] - run.state[sliding][:, [0, 3, 5]].T).max(axis=1)
         differences.append(gap)
-    # the distance falls with the reciprocal of the coefficient
+    # the difference is proportional to the reciprocal of the coefficient
     for coarse, fine in pairwise(differences):
         assert (fine < 0.4 * coarse).all()
     assert differences[-1].max() < 5e-3
@@ -147,7 +147,7 @@ def test_sliding_corner_stays_level_and_dissipates(model, restraint):
 def test_sliding_on_the_left_mirrors_sliding_on_the_right(model, restraint):
     one, other = (drop(model(restraint), sign, duration=0.6) for sign in (1.0, -1.0))
     turned = np.array([-1.0, 1.0, -1.0, -1.0, 1.0, -1.0])
-    # pads are mirrored bit for bit; along a bed places are counted from its left end
+    # pads are mirrored bit for bit; positions along a bed are measured from its left end
     slack = 0.0 if model is pads else 1e-10
     np.testing.assert_allclose(other.state, one.state * turned, rtol=0.0, atol=slack)
     np.testing.assert_allclose(other.events.time, one.events.time, rtol=slack)
@@ -155,14 +155,14 @@ def test_sliding_on_the_left_mirrors_sliding_on_the_right(model, restraint):
 
 
 def test_fast_landing_corner_does_not_slide():
-    """It comes down so fast that the hold cannot stop it."""
+    """It lands so fast that static friction cannot stop it."""
     model = pads()
     run = drop(model, speed=-3.0)
     landing = list(run.events.kind).index(EventKind.IMPACT)
     assert not slides(model, run.events.mode_after)[landing]
 
 
-# a corner that leaves into flight ---------------------------------------------------------------
+# separation into flight ---------------------------------------------------------------
 
 SQUAT_B, SQUAT_H, SQUAT_K, SQUAT_C = 1.0, 1.7, 770.0, 20.0
 
@@ -190,8 +190,8 @@ def right_pad(alpha, y, spin, speed):
     return k * (0.5 * G / k - rise) - c * rate
 
 
-def squat_by_friction(start, coefficient, times):
-    """Integrate the same block with dry friction at the middle of its base, regularised."""
+def squat_dry_friction_reference(start, coefficient, times):
+    """Integrate the same block with regularised dry friction at the middle of its base."""
     b, h = SQUAT_B, SQUAT_H
     inertia = (b * b + h * h) / 3.0
 
@@ -209,7 +209,7 @@ def squat_by_friction(start, coefficient, times):
 
 
 def test_corner_slides_along_relaxing_pad_until_flight():
-    """Held it leaves, free it would be pressed at once: the limit of dry friction lies between."""
+    """It separates if held and is pressed at once if free: the limit of dry friction is between."""
     model, run = leaving()
     separates = run.events.kind == EventKind.SEPARATION
     left = np.flatnonzero(separates & slides(model, run.events.mode_after))[0]
@@ -217,7 +217,7 @@ def test_corner_slides_along_relaxing_pad_until_flight():
     sliding = (run.time > begin) & slides(model, run.mode)
     assert sliding.sum() > 50
     alpha, y, _, spin, speed, _ = run.state[sliding].T
-    # below the level of the unloaded pad, with no force
+    # below the level of the unloaded pad, without force
     rise = y + 1.7 * (1.0 - np.cos(alpha)) - np.sin(alpha)
     assert (rise < 0.99 * 0.5 * G / 770.0).sum() > 10
     assert np.abs(right_pad(alpha, y, spin, speed)).max() < 1e-9 * G
@@ -225,7 +225,7 @@ def test_corner_slides_along_relaxing_pad_until_flight():
     times = run.time[sliding] - begin
     gaps = []
     for coefficient in (20.0, 80.0, 320.0):
-        z = squat_by_friction(run.events.state_after[left], coefficient, times)
+        z = squat_dry_friction_reference(run.events.state_after[left], coefficient, times)
         gaps.append(np.abs(z[[0, 3, 5]] - run.state[sliding][:, [0, 3, 5]].T).max(axis=1))
     for coarse, fine in pairwise(gaps):
         assert (fine < 0.4 * coarse).all()
@@ -240,7 +240,7 @@ def test_separation_into_flight_is_mirror_symmetric():
 
 
 def test_fixed_steps_are_refined_while_corner_slides_on_fast_pad():
-    """A weak dashpot relaxes in a sixth of the step that the vibrations need."""
+    """A weak dashpot relaxes within a sixth of the step required by the vibrations."""
     model = on_pads(block(1.0, 1.705, CENTRE), 840.0, 1.45)
     ground = Motion.of_samples(0.01, np.zeros(51), np.zeros(51))
     fast, exact = (
@@ -263,18 +263,18 @@ def test_fixed_steps_are_refined_while_corner_slides_on_fast_pad():
 
 
 def test_rounding_error_of_speed_counts_as_zero():
-    """An end stands still where the body moves as fast as it rotates, but for the last digits."""
+    """An end is at rest, up to rounding, where the body's velocity cancels its rotation."""
     rng = np.random.default_rng(4)
-    beside = 0
+    differing = 0
     for speed, lever in rng.normal(size=(200, 2)).tolist():
         rate = -speed / lever
         noise = speed_noise(speed, lever, rate)
         left = speed + lever * rate
-        beside += left != 0.0
+        differing += left != 0.0
         assert is_lifted(left, left, noise)
         assert noise < 1e-14 * abs(speed)
         clearly = 1e-13 * abs(speed)
-        assert not is_lifted(clearly, clearly, noise)  # it rises by itself
-        assert not is_lifted(-clearly, -clearly, noise)  # it comes down all the same
+        assert not is_lifted(clearly, clearly, noise)  # it rises
+        assert not is_lifted(-clearly, -clearly, noise)  # it moves down
         assert is_lifted(-clearly, clearly, noise)
-    assert beside > 10
+    assert differing > 10

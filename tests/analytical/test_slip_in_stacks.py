@@ -1,4 +1,4 @@
-"""Bodies of a stack that slide on rigid bases: closed forms, limits, balances, and refusals."""
+"""Sliding bodies of a stack on rigid bases: closed forms, limits, balances, and refusals."""
 
 import numpy as np
 import pytest
@@ -22,8 +22,8 @@ PADS = rf.TwoSpringSupport(frequency_ratio=40, damping_ratio=0.1)
 ENDLESS = rf.RigidGround(friction=1e9, kinetic_friction=1.2, impact="stick")
 
 
-def ground(friction: float, kinetic: float | None = None, **given) -> rf.RigidGround:
-    return rf.RigidGround(friction=friction, kinetic_friction=kinetic, **given)
+def ground(friction: float, kinetic: float | None = None, **options) -> rf.RigidGround:
+    return rf.RigidGround(friction=friction, kinetic_friction=kinetic, **options)
 
 
 def noise(seed: int, peak: float, mirrored: float = 1.0) -> rf.GroundMotion:
@@ -37,43 +37,43 @@ def noise(seed: int, peak: float, mirrored: float = 1.0) -> rf.GroundMotion:
     )
 
 
-def run_of(interfaces, base, motion, *links, bodies=(STATUE, PLINTH), offset=0.0, **given):
+def run_of(interfaces, base, motion, *links, bodies=(STATUE, PLINTH), offset=0.0, **options):
     stack = rf.Stack(*bodies, interfaces=interfaces, offsets=[f"{offset} m"])
-    given = {"accuracy": "reference", "free_vibration": "1 s", "second_look": False} | given
-    return rf.System(stack, base, *links).simulate(motion, **given)
+    options = {"accuracy": "reference", "free_vibration": "1 s", "second_look": False} | options
+    return rf.System(stack, base, *links).simulate(motion, **options)
 
 
 @pytest.mark.filterwarnings("ignore::rockframe.errors.RockframeWarning")
 @pytest.mark.parametrize(
-    ("between", "below", "told"),
+    ("between", "below", "reported"),
     [
         ((0.5, 0.3), (0.42, 0.4), True),  # both bases slip, or the lower one: 0.4 g < 0.5 g
         ((0.35, 0.3), (0.42, 0.4), False),  # friction cannot hold the upper plate at 0.4 g
         ((0.3, 0.3), (0.4, 0.4), False),
     ],
 )
-def test_ambiguous_slip_after_jump_is_in_cautions(between, below, told):
+def test_ambiguous_slip_after_jump_is_in_cautions(between, below, reported):
     jump = rf.GroundMotion.from_arrays((np.full(11, 0.6 * GRAVITY), "m/s^2"), "0.01 s")
     with plain_python():
         found = run_of(
             [ground(*between)], ground(*below), jump, bodies=(PLATE, PLATE), free_vibration=None
         )
-    assert ("there are 2 ways to bear and to slip" in found.attrs["cautions"]) == told
+    assert ("there are 2 ways to bear and to slip" in found.attrs["cautions"]) == reported
     assert (found.body_slip[:, -1] < 0.0).all()
 
 
-@pytest.mark.parametrize("way", [1.0, -1.0])
-def test_two_plates_that_slide_in_closed_form(way):
-    upper, lower, strong, length = 0.1, 0.3, way * 5.0, 0.4
+@pytest.mark.parametrize("direction", [1.0, -1.0])
+def test_two_plates_that_slide_in_closed_form(direction):
+    upper, lower, strong, length = 0.1, 0.3, direction * 5.0, 0.4
     steady = rf.GroundMotion.from_arrays((np.full(41, strong), "m/s^2"), "0.01 s")
-    with plain_python():  # these equations take longest to compile
+    with plain_python():  # these equations take the longest to compile
         found = run_of(
             [ground(0.2, upper)], ground(0.35, lower), steady, bodies=(PLATE, SLAB),
             free_vibration=None,
         )  # fmt: skip
     one, two = 1000.0, 2000.0
-    of_upper = way * upper * GRAVITY  # absolute accelerations
-    of_lower = way * GRAVITY * (lower * (one + two) - upper * one) / two
+    of_upper = direction * upper * GRAVITY  # absolute accelerations
+    of_lower = direction * GRAVITY * (lower * (one + two) - upper * one) / two
     rates = of_upper - of_lower, of_lower - strong
     assert found.body_slip.values[:, -1] == pytest.approx(
         [0.5 * rate * length**2 for rate in rates], rel=1e-9
@@ -94,7 +94,7 @@ def test_sticking_body_rides_on_sliding_body():
     ("seed", "static", "kinetic"), [(5, 0.36, 0.25), (8, 0.36, 0.25), (6, 0.38, 0.36)]
 )
 def test_wide_lower_body_acts_as_ground(seed, static, kinetic):
-    """In these runs no slip ends and turns round within an impact, where the laws differ."""
+    """In these runs no slip stops and reverses within an impact, where the laws differ."""
     floor, shaken = ground(static, kinetic), noise(seed, 6.0)
     wide = rf.Block(width="4 m", height="1 m", mass="30 t")
     found = run_of([floor], rf.RigidGround(), shaken, bodies=(STATUE, wide))
@@ -151,7 +151,7 @@ def test_sticking_impacts_rock_more_and_slip_less():
     )
     assert slides.impact_count.item() > 20
     assert sticks.impact_count.item() > 20
-    # what is held in impacts rocks more, and slips less
+    # bodies held in impacts rock more and slip less
     assert sticks.peak_rotation.item() > 100.0 * slides.peak_rotation.item()
     assert sticks.peak_body_slip.values[0] < slides.peak_body_slip.values[0]
 
@@ -220,9 +220,9 @@ def test_description_lists_friction_of_each_base():
     system = rf.System(
         rf.Stack(STATUE, PLINTH, interfaces=[ground(0.3, 0.2, impact="stick")]), rf.RigidGround()
     )
-    told = system.describe()
-    assert "0.3, 0.2, held in impacts" in told
-    assert "base 2: friction at rest, and of slip" in told
+    text = system.describe()
+    assert "0.3, 0.2, held in impacts" in text
+    assert "base 2: friction at rest, and of slip" in text
     assert EventKind.SLIP in set(system.simulate(noise(5, 6.0)).event_kind.values.tolist())
 
 
@@ -232,12 +232,12 @@ def test_trial_impact_loss_equals_kinetic_energy_lost(corners, slip):
     stack = rf.Stack(STATUE, PLINTH, interfaces=[ground(0.3)])
     system = assemble((stack, ground(0.4))).setting.contact_model().system
     state, flying = np.zeros(12), system.with_bearing_corners(0, 0, 0)
-    # the upper body comes down turning, and both slip
+    # the upper body lands rotating, and both slip
     state[6:] = 0.7, -0.4, 0.0, 0.0, slip, -0.5 * slip
-    had = system.energies(flying, state).kinetic
+    kinetic = system.energies(flying, state).kinetic
     set_inertia_loads(system, 0.0, 0.0, system.workspace())
     write_trial_data(system, True, state)
     found = system.try_corners(flying, corners, 0b1111, True, 0.0, state)
     assert [system.trial_sense(k) for k in range(2)] == [np.sign(slip), -np.sign(slip)]
     system.change_velocities(state)
-    assert found.loss == pytest.approx(had - system.energies(flying, state).kinetic, rel=1e-12)
+    assert found.loss == pytest.approx(kinetic - system.energies(flying, state).kinetic, rel=1e-12)

@@ -1,4 +1,4 @@
-"""A block that slips on pads and on a bed: limits, mirror images, energies, and what is told."""
+"""A block that slips on pads or a bed: limits, symmetry, energies, and warnings."""
 
 import numpy as np
 import pytest
@@ -82,7 +82,7 @@ def test_peak_slip_excludes_final_flight(base):
 @BASES
 @pytest.mark.parametrize("rule", ["contact-state", "leading-corner"])
 def test_infinite_friction_converges_to_held_base(base, rule):
-    # held, the point changes before the restitution of an impact is taken; with friction in it
+    # a held point changes before the restitution of an impact, a slipping one within it
     if base is PADS and rule == "contact-state":
         base = base.replace(restitution=1.0)
     held = run(base, restraint=rule, accuracy="reference")
@@ -116,8 +116,8 @@ def test_run_reports_slip_and_its_events():
     assert found.attrs["verdict"].startswith("Slid 0.")
     kinds = found.event_kind.attrs["flag_meanings"].split()
     values = found.event_kind.attrs["flag_values"]
-    met = {kinds[list(values).index(one)] for one in found.event_kind.values}
-    assert {"slip", "stick"} <= met
+    kinds_met = {kinds[list(values).index(one)] for one in found.event_kind.values}
+    assert {"slip", "stick"} <= kinds_met
     assert found.slip[-1] == found.residual_slip
     assert abs(found.slip).max() <= found.peak_slip * (1.0 + 1e-12)
     assert "mu_k" in rf.System(BLOCK, PADS.replace(friction=0.25)).describe()
@@ -155,37 +155,37 @@ PLINTH = rf.Block(width="1 m", height="1 m", mass="1.5 t")
 PULSE = rf.GroundMotion.sine_pulse(amplitude="-4 m/s^2", frequency="1.5 Hz")
 
 
-@pytest.mark.parametrize("beside", ["0 m", "0.1 m"])
-def test_simultaneous_landing_obeys_restitution_and_friction_cone(beside):
-    """Each of its own speed, with friction of both within the cone; one alone as it tips the other.
+@pytest.mark.parametrize("eccentricity", ["0 m", "0.1 m"])
+def test_simultaneous_landing_obeys_restitution_and_friction_cone(eccentricity):
+    """Each by its own speed, both impulses in the friction cone; or one, which lifts the other.
 
-    Neither waits for the other, so that a block that falls flat stays so.
+    Both are simultaneous, so that a block that falls flat stays flat.
     """
-    block, rng, alone = BLOCK.replace(eccentricity=beside), np.random.default_rng(7), 0
+    block, rng, singles = BLOCK.replace(eccentricity=eccentricity), np.random.default_rng(7), 0
     for friction in (0.1, 0.3, 0.6, np.inf):
-        given = {"friction": min(friction, 1e9), "kinetic_friction": min(friction, 0.6)}
-        model = rf.System(block, PADS.replace(restitution=0.3, **given)).setting.compile()
+        frictions = {"friction": min(friction, 1e9), "kinetic_friction": min(friction, 0.6)}
+        model = rf.System(block, PADS.replace(restitution=0.3, **frictions)).setting.compile()
         system, (full, rest, memory) = model.system, model.initial(Start())
         mode, part = system.with_slip_sense(full, 0, 1.0), system.on_base(0)
         for slips in (0.0, *rng.normal(size=30)):
             state = rest.copy()
             state[3:] = 0.2 * rng.normal() * (slips != 0.0), -1.0, slips
-            before, had = part.body.base_line_at(system.state_of(0, state)), state.copy()
+            before, initial = part.body.base_line_at(system.state_of(0, state)), state.copy()
             lost = memory[IMPACT_LOSS]
             system.strike(0, True, True, mode, state, memory)
             after = part.body.base_line_at(system.state_of(0, state))
-            kept = np.array([
+            excess = np.array([
                 after.left_speed - 0.3 * before.left_speed,
                 after.right_speed - 0.3 * before.right_speed,
             ])  # fmt: skip
-            _, press, along = state[3:] - had[3:]
+            _, press, along = state[3:] - initial[3:]
             assert abs(along) <= min(friction, 0.6) * press * (1.0 + 1e-12) + 1e-15
             assert memory[IMPACT_LOSS] > lost
-            assert kept.min() == pytest.approx(0.0, abs=1e-12)
-            alone += kept.max() > 1e-9
-            if slips == 0.0 and beside == "0 m":
+            assert excess.min() == pytest.approx(0.0, abs=1e-12)
+            singles += excess.max() > 1e-9
+            if slips == 0.0 and eccentricity == "0 m":
                 np.testing.assert_allclose(state[3:], [0.0, -0.3, 0.0], atol=1e-14)
-    assert 0 < alone < 60
+    assert 0 < singles < 60
 
 
 def stacked(upper, lower, pads=PADS):
@@ -207,7 +207,7 @@ def test_stack_slip_stays_within_friction_cone(frictions):
         assert (abs(along) <= friction * abs(normal) + 1e-9 * weight).all()
         rate = np.gradient(one.body_slip, one.time)
         slips = (abs(rate) > 0.05) & (normal > 0.01 * weight)
-        if friction < 0.3:  # each friction opposes the slip with all that it has
+        if friction < 0.3:  # friction opposes the slip fully
             assert slips.any()
             assert (np.sign(along)[slips] == -np.sign(rate)[slips]).mean() > 0.9
     np.testing.assert_allclose(
@@ -253,7 +253,7 @@ def test_checked_friction_in_stack_is_refused():
 
 
 def two_bodies(**friction):
-    """Run two bodies on yielding bases from a jump of the ground, after which both want to slip."""
+    """Run two bodies on compliant bases after a jump of the ground that makes both slip."""
     jump = rf.GroundMotion.from_arrays((np.full(7, 1.5), "m/s^2"), "0.05 s")
     plinth = rf.Block(width="1.5 m", height="2 m", mass="3 t")
     stack = rf.Stack(BLOCK, plinth, interfaces=[PADS.replace(frequency_ratio=20, **friction)])
@@ -275,15 +275,15 @@ def test_tiny_friction_approaches_frictionless_slip(friction):
     "friction", [1e5, 1e15, *(pytest.param(one, marks=pytest.mark.long) for one in (1e7, 1e9))]
 )
 def test_arbitrarily_large_friction_holds(friction):
-    held, slippery = (two_bodies(**given).rotation for given in ({}, {"friction": friction}))
+    held, slippery = (two_bodies(**options).rotation for options in ({}, {"friction": friction}))
     np.testing.assert_allclose(slippery, held, rtol=0.0, atol=1e-12)
 
 
 @pytest.mark.parametrize(("number", "ends"), [(189, "0.1 s"), (169, "0.13 s"), (174, "0.13 s")])
 def test_large_friction_does_not_chatter_from_rounding(number, ends):
-    """Each body slipped and stuck in turn, without end, as its friction came to the limit."""
-    drawn_system, shake = draw_scene("friction on pads", np.random.default_rng(number))
-    block = drawn_system.parts["block"]
+    """Each body once slipped and stuck endlessly when its friction reached the limit."""
+    random_system, shake = draw_scene("friction on pads", np.random.default_rng(number))
+    block = random_system.parts["block"]
     width, height = block.si.width, block.si.height
     below = rf.Block(
         width=f"{1.4 * width} m", height=f"{max(height, 1.1 * width)} m", mass="3 t"
@@ -315,7 +315,7 @@ def test_squat_block_has_zero_restitution_on_pads():
     system = rf.System(squat, PADS.replace(friction=0.3))
     assert set(system.setting.support.restitution) == {0.0}
     assert not any("eps_max" in one for one in system.setting.cautions())
-    # let go of tilted it comes to rest, where corners that are thrown back bounce without end
+    # released at a tilt it comes to rest, where rebounding corners bounce endlessly
     tilted = rf.InitialState(rotation="0.2 rad")
     found = system.simulate(initial=tilted, duration="3 s", outputs=("energy",))
     assert found.status.item() == 0
@@ -333,7 +333,7 @@ def test_squat_block_has_zero_restitution_on_pads():
     ],
 )
 def test_corners_of_squat_bodies_do_not_chatter_from_rounding(number, ends):
-    """Each came down and left in turn, without end, as it touched its pad on its way up."""
+    """Each once landed and separated endlessly when it touched its pad while rising."""
     system, motion = draw_scene("stack of squat bodies", np.random.default_rng(number))
     with plain_python():
         found = system.simulate(
@@ -343,7 +343,7 @@ def test_corners_of_squat_bodies_do_not_chatter_from_rounding(number, ends):
 
 
 def test_body_with_negligible_slip_does_not_chatter():
-    """It slipped to either side at the middle and at a corner, and its end left and landed."""
+    """It once slipped to either side at the middle and a corner, while its end left and landed."""
     system, motion = draw_scene("stack of squat bodies", np.random.default_rng(2412))
     with plain_python():
         found = system.simulate(motion, duration="0.36 s", outputs=("energy",))
@@ -352,7 +352,7 @@ def test_body_with_negligible_slip_does_not_chatter():
 
 
 def test_overturning_at_instant_of_another_event_ends_run():
-    """The state and the mode were those after the landing that came before, and the run ended."""
+    """State and mode were once those after the preceding landing, and the run ended."""
     system, motion = draw_scene("stack of squat bodies", np.random.default_rng(840))
     with plain_python():
         found = system.simulate(motion, accuracy="fast", outputs=None, second_look=False)
@@ -362,7 +362,7 @@ def test_overturning_at_instant_of_another_event_ends_run():
 
 @pytest.mark.long
 def test_bounces_and_slips_end_at_huge_friction():
-    """A body let go of its base and was held, without end, as the one below slipped."""
+    """A body once separated and was held endlessly while the body below slipped."""
     system, motion = draw_scene("stack with friction of any size", np.random.default_rng(650))
     found = system.simulate(motion, duration="1.03 s", outputs=("energy",), second_look=False)
     assert int(found.status) <= Status.TOPPLED

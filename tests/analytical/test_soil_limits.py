@@ -1,4 +1,4 @@
-"""Soil and pads that grow stiff, caps that shrink: what a scene turns into."""
+"""Limits of scenes for stiff soil, stiff pads and small caps."""
 
 import numpy as np
 import pytest
@@ -38,8 +38,8 @@ def run(*parts, peak=-3.0, duration="2.5 s", **options):
     )
 
 
-def apart(one, other, name="rotation"):
-    """Largest difference of two histories, over the largest value."""
+def largest_difference(one, other, name="rotation"):
+    """Return the largest difference of two histories over the largest value."""
     scale = np.abs(other[name].values).max()
     return np.abs(one[name].values - other[name].values).max() / scale
 
@@ -51,7 +51,7 @@ def apart(one, other, name="rotation"):
 @pytest.mark.parametrize("rotation", ["finite", "small"])
 @pytest.mark.parametrize("rule", RULES)
 def test_coupled_stack_on_firm_soil_converges_to_block_on_pads(rule, rotation):
-    """Error 1/k0 where landings take no impulse: that of the cap's own inertia would remain."""
+    """Error 1/k0 if landings have no impulse; the impulse of the cap's inertia would remain."""
     options = {"restraint": rule, "rotation": rotation}
     with pytest.warns(ModelWarning, match="eps_max"):
         exact = run(block(), pads(restitution=1), **options)
@@ -62,23 +62,25 @@ def test_coupled_stack_on_firm_soil_converges_to_block_on_pads(rule, rotation):
     for k0 in stiffness:
         with pytest.warns(ModelWarning, match="eps_max"):
             response = run(block(), pads(restitution=1), cap(), soil(f"{k0} Pa"), **options)
-        errors.append([apart(response, exact, name) for name in SMOOTH])
+        errors.append([largest_difference(response, exact, name) for name in SMOOTH])
         assert response.impact_count.item() == exact.impact_count.item()
     slopes = np.polyfit(np.log(stiffness[1:]), np.log(errors[1:]), 1)[0]
     np.testing.assert_allclose(slopes, -1.0, atol=0.05)
     assert max(errors[-1]) < 2e-5
-    assert apart(response, exact, "vertical_displacement") < 1e-3
+    assert largest_difference(response, exact, "vertical_displacement") < 1e-3
 
 
 def test_heavy_cap_on_firm_soil_converges_to_block_on_pads():
-    """With eps_max the cap recoils at a landing, however firm the soil: error 1/m_c."""
+    """With eps_max the cap recoils at a landing on soil of any stiffness: error 1/m_c."""
     exact = run(block(), pads())
     assert exact.impact_count.item() > 0
     mass = np.array([1e6, 1e7, 1e8])
     errors = []
     for m_c in mass:
         heavy = cap(mass=f"{m_c} kg")
-        errors.append(apart(run(block(), pads(), heavy, soil(f"{1e7 * m_c} Pa")), exact))
+        errors.append(
+            largest_difference(run(block(), pads(), heavy, soil(f"{1e7 * m_c} Pa")), exact)
+        )
     slope = np.polyfit(np.log(mass), np.log(errors), 1)[0]
     assert slope == pytest.approx(-1.0, abs=0.05)
     assert errors[-1] < 1e-4
@@ -90,11 +92,11 @@ def test_cascade_on_firm_soil_converges_to_block_on_pads():
     errors = []
     for k0 in stiffness:
         response = run(block(), pads(), cap(), soil(f"{k0} Pa"), coupling="cascade")
-        errors.append([apart(response, exact, name) for name in SMOOTH])
+        errors.append([largest_difference(response, exact, name) for name in SMOOTH])
     slopes = np.polyfit(np.log(stiffness), np.log(errors), 1)[0]
     np.testing.assert_allclose(slopes, -1.0, atol=0.05)
     assert max(errors[-1]) < 1e-3
-    assert apart(response, exact, "vertical_displacement") < 1e-3
+    assert largest_difference(response, exact, "vertical_displacement") < 1e-3
 
 
 # stiff pads ----------------------------------------------------------------------------------
@@ -114,9 +116,9 @@ def test_block_and_cap_on_stiff_pads_converge_to_one_body(rule, separation):
         response = run(block(), pads(ratio), under, ground, peak=-1.2, restraint=rule)
         assert (response.contact_state.values == 0).all()
         errors.append([
-            apart(response, exact, "rotation"),
-            apart(response, exact, "cap_rotation"),
-            apart(response, exact, "cap_vertical_displacement"),
+            largest_difference(response, exact, "rotation"),
+            largest_difference(response, exact, "cap_rotation"),
+            largest_difference(response, exact, "cap_vertical_displacement"),
             np.abs(response.rotation_on_cap.values).max() / exact.peak_rotation.item(),
         ])  # fmt: skip
     slopes = np.polyfit(np.log(beta), np.log(errors), 1)[0]
@@ -173,7 +175,7 @@ def test_response_is_smooth_down_to_zero_cap_mass(scene, width):
     for name, row in none.items():
         if row.dims == ("time",):
             assert np.isfinite(row.values).all(), name
-    one, ten = apart(light("1 kg"), none), apart(light("10 kg"), none)
+    one, ten = largest_difference(light("1 kg"), none), largest_difference(light("10 kg"), none)
     assert 0.0 < one < 1e-4
     assert ten / one == pytest.approx(10.0, rel=0.01)
 
@@ -190,11 +192,11 @@ def test_too_light_cap_in_coupled_equations_warns(mass):
         if row.dims == ("time",):
             assert np.isfinite(row.values).all(), name
     assert light.energy_residual.item() < 1e-8
-    # what the share stands for
+    # the meaning of the share
     share = cap(width="3.2 m", height="0 m", mass="50 kg")
-    assert apart(light, run(block(), pads(), share, soil())) < 1e-3
+    assert largest_difference(light, run(block(), pads(), share, soil())) < 1e-3
     heavier = cap(width="3.2 m", height="0 m", mass="500 kg")
-    assert apart(light, run(block(), pads(), heavier, soil())) < 0.05
+    assert largest_difference(light, run(block(), pads(), heavier, soil())) < 0.05
 
 
 def test_cap_above_least_mass_does_not_warn():
@@ -214,7 +216,7 @@ def test_separation_rules_agree_without_damping(rule):
     )
     assert int((one.contact_state != 0).sum()) > 20
     for name in one.data_vars:
-        # a duration is read off between the ends of steps, which the rules place otherwise
+        # a duration is interpolated between ends of steps, which differ between the rules
         rtol = 1e-6 if name == "peak_friction_demand_duration" else 1e-9
         np.testing.assert_allclose(one[name], other[name], rtol=rtol, atol=1e-13, err_msg=name)
 
@@ -224,7 +226,7 @@ def test_separation_by_pressure_does_not_pull_with_damping():
         run(block(), soil(damping_ratio=0.5, separation=separation), peak=-2.5)
         for separation in ("displacement", "pressure")
     )
-    assert apart(one, other) > 1e-3
+    assert largest_difference(one, other) > 1e-3
     assert (other.contact_length.values <= 2.4 + 1e-12).all()
     least = 50e3 * 9.80665 * 1e-9
     assert other.soil_reaction.values.min() >= -least

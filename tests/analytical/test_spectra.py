@@ -105,7 +105,7 @@ def test_harmonic_from_rest_with_its_transient(ratio, xi):
     time = np.linspace(0.0, 12.0, 200_001)
     u, v, pull = harmonic_response(time, rate, omega, xi)
     found = response_spectrum(motion, ([2.0 * math.pi / omega], "s"), xi)
-    # the free vibration after the motion may go higher; its energy bounds it
+    # free vibration after the motion may be larger; its energy bounds it
     energy = math.hypot(omega * u[-1], v[-1])
     for name, history, bound in (
         ("spectral_displacement", u, energy / omega),
@@ -123,7 +123,7 @@ def test_harmonic_from_rest_with_its_transient(ratio, xi):
 @pytest.mark.parametrize("xi", [0.05, 0.2])
 @pytest.mark.parametrize("ratio", [0.5, 1.0, 2.0])
 def test_harmonic_in_steady_state(ratio, xi):
-    """Faded in and out over many cycles, so that no transient is left."""
+    """Faded in and out over many cycles, so that no transient remains."""
     count, dt = 48_001, 0.0025
     time = np.arange(count) * dt
     grown = np.sin(0.5 * math.pi * np.minimum(1.0, np.minimum(time, 120.0 - time) / 35.0)) ** 2
@@ -155,7 +155,7 @@ def brute_force(samples, dt, period, xi, fine):
     inside = np.array([*accumulate([part] * fine, np.matmul)])[:, :2]
     padded = np.concatenate([samples, [0.0], np.zeros(math.ceil(1.2 * period / dt))])
     slopes = np.diff(padded) / dt
-    slopes[samples.size - 1] = 0.0  # the ground stops at once after its last sample
+    slopes[samples.size - 1] = 0.0  # the ground acceleration drops to zero after its last sample
     state, peaks = np.zeros(2), np.zeros(3)
     for k, slope in enumerate(slopes):
         start = padded[k] if k != samples.size - 1 else 0.0
@@ -184,7 +184,7 @@ SPECTRA = ("spectral_displacement", "spectral_velocity", "absolute_spectral_acce
 
 
 def test_peak_is_found_where_ground_reverses_within_step():
-    """Value and slope at the end of the step do not bound it: the ground reverses in the step."""
+    """Value and slope at the step's end do not bound the peak: the ground reverses in the step."""
     samples = np.array([1.4485, 0.5495, -1.3558, 0.7554])
     motion = rf.GroundMotion.from_arrays((samples, "m/s^2"), "0.02 s")
     found = response_spectrum(motion, ["0.7 s"], 1.0)
@@ -194,7 +194,7 @@ def test_peak_is_found_where_ground_reverses_within_step():
 
 
 def test_peak_is_found_where_velocity_chord_misleads():
-    """At the zero of the chord of the velocity the acceleration is nearly zero."""
+    """The acceleration nearly vanishes at the zero of the chord of the velocity."""
     samples = np.array([0.94, -0.88, 1.38, -0.68, 0.78, -1.77])
     motion = rf.GroundMotion.from_arrays((samples, "m/s^2"), "0.02 s")
     found = response_spectrum(motion, ["0.24 s"], 0.7)
@@ -204,7 +204,7 @@ def test_peak_is_found_where_velocity_chord_misleads():
 
 
 def test_zero_padding_does_not_change_spectra_of_jumping_pulse():
-    """Padded with zeros, a pulse that jumps at its end has the same spectra."""
+    """A pulse that jumps at its end has the same spectra when padded with zeros."""
     pulse = rf.GroundMotion.cosine_pulse("3 m/s^2", "1 Hz", cycles=0.3)
     still = rf.GroundMotion.from_arrays((np.zeros(200), "m/s^2"), (pulse.si.time_step, "s"))
     periods = (np.geomspace(0.01, 5.0, 60), "s")
@@ -227,7 +227,7 @@ def test_limits_of_very_short_and_very_long_periods():
         assert rigid[name].values[0, 1] == pytest.approx(peak, rel=1e-2)
     for name in ("spectral_displacement", "spectral_velocity", "pseudo_spectral_velocity"):
         assert rigid[name].values[0, 0] == 0.0
-    # an oscillator that hardly moves sees the ground move under it
+    # the relative motion of a very soft oscillator is that of the ground
     speed = measures.peak_ground_velocity.item()
     assert rigid.spectral_velocity.values[0, 2] == pytest.approx(speed, rel=1e-2)
 
@@ -303,7 +303,7 @@ def test_measures_of_a_sine_pulse():
 @pytest.mark.parametrize("cycles", [0.37, 0.61, 1.13])
 @pytest.mark.parametrize("level", [0.99, 0.9999, 0.99999])
 def test_exceedance_between_samples_counts_in_durations(cycles, level):
-    """About the peak of a sine, which is no sample here, for less than an interval."""
+    """The level is exceeded near a peak between samples, for less than an interval."""
     pulse = rf.GroundMotion.sine_pulse("1 m/s^2", "1 Hz", cycles=cycles)
     assert not (np.abs(pulse.si.horizontal.samples) == 1.0).any()
     width = 0.5 - math.asin(level) / math.pi
@@ -332,7 +332,7 @@ def test_standardized_cav_counts_exceedance_between_samples():
 
 @pytest.mark.parametrize(("step", "lost"), [(0.01, 0.046), (0.02, 0.175)])
 def test_band_limited_refinement_restores_short_periods(step, lost):
-    """A swell of 12 Hz, of which there are 8.3 and 4.2 samples per period."""
+    """A burst of 12 Hz with 8.3 and 4.2 samples per period."""
 
     def swell(between):
         time = np.arange(0.0, 4.0 + 0.5 * between, between)
@@ -423,7 +423,7 @@ def test_record_intensities_match_eqsig(record):
     assert found.cumulative_absolute_velocity.item() == pytest.approx(
         im.calc_cav(signal)[-1], rel=1e-12
     )
-    # it counts whole samples
+    # pyrotd counts whole samples
     within = {"abs": 3.0 * record.si.time_step}
     durations = im.calc_sig_dur_vals(record.si.horizontal.samples, record.si.time_step)
     assert found.significant_duration_5_95.item() == pytest.approx(durations, **within)
@@ -437,7 +437,7 @@ def test_record_intensities_match_eqsig(record):
     indirect=True,
 )
 def test_record_spectra_match_eqsig(record):
-    """It sees peaks at samples only: give it the same straight lines, sampled eight times."""
+    """It takes peaks at samples only, so the same straight lines are sampled eight times finer."""
     pytest.importorskip("eqsig")
     from eqsig import sdof
 

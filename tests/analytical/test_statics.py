@@ -141,25 +141,25 @@ ANGLES = (1e-4, -0.004, 0.0137, 0.02, -0.04, 0.12, 0.24)
 
 
 def stack(name, **options):
-    given = STACKS[name]
-    width, height, mass = given["cap"]
+    parts = STACKS[name]
+    width, height, mass = parts["cap"]
     return rf.System(
         rf.Block(width=f"{2 * B} m", height=f"{2 * H} m", mass=f"{M} kg"),
-        rf.TwoSpringSupport(frequency_ratio=given["beta"], damping_ratio=0.1),
+        rf.TwoSpringSupport(frequency_ratio=parts["beta"], damping_ratio=0.1),
         rf.CushionCap(width=width, height=height, mass=mass),
-        rf.WinklerSoil(stiffness=given["soil"], damping_ratio=0.2),
+        rf.WinklerSoil(stiffness=parts["soil"], damping_ratio=0.2),
         **options,
     )
 
 
 @cache
 def held_stack(name, angle, rotation, rule):
-    """Return a held stack, once for all that is asked of it."""
+    """Return a held stack, cached."""
     return Held(name, angle, rotation, rule)
 
 
 class Held:
-    """A stack held at a rotation: its coordinates, read from what is published of it."""
+    """A stack held at a rotation, with coordinates computed from its published results."""
 
     def __init__(self, name, angle, rotation, rule):
         self.system = stack(name, rotation=rotation, restraint=rule)
@@ -170,12 +170,12 @@ class Held:
         self.phi = self.state.held_cap_rotation.item()
         self.psi = angle - self.phi
         left, right = self.state.held_left_reaction.item(), self.state.held_right_reaction.item()
-        # the corner that bears more tells how far the block has sunk on its pads
+        # the corner that bears more gives the settlement of the block on its pads
         bears, side = (right, -1.0) if right >= left else (left, 1.0)
         k = self.setting.upper.support.stiffness
         level = 0.5 * M * GRAVITY / k - bears / k
         self.r = level - side * B * self.sine(self.psi) - H * self.versine(self.psi)
-        # the end of the cap that bears: its pressure is that of a triangle or of a trapezium
+        # the bearing end of the cap: a triangle or a trapezium of pressure
         self.weight = (M + cap.mass) * GRAVITY
         width = 2.0 * cap.half_width
         length = self.state.held_contact_length.item()
@@ -201,11 +201,11 @@ class Held:
         return 0.5 * angle**2 if self.small else 2.0 * math.sin(0.5 * angle) ** 2
 
     def about(self, pin, height, angle):
-        """The centre of mass beside the held point, `pin` from the middle of the base."""
+        """Return the horizontal distance of the centre of mass from the point held at `pin`."""
         return height * angle if self.small else height * np.sin(angle) - pin * np.cos(angle)
 
     def places(self, q):
-        """Centres of mass of cap and block; q may be complex."""
+        """Return the centres of mass of cap and block; q may be complex."""
         rise, phi, r, psi = q
         cap = self.setting.cap
         x = self.about(self.cap_pin, cap.half_height, phi)
@@ -235,7 +235,7 @@ class Held:
         return total
 
     def moves(self):
-        """Mode and state of the equations of motion, at rest in this place."""
+        """Return mode and state of the equations of motion at rest in this position."""
         model = self.setting.compile()
         system = model.system
         x = np.zeros(2 * COORDINATES)
@@ -259,7 +259,7 @@ class Held:
 @pytest.mark.parametrize("rotation", ["small", "finite"])
 @pytest.mark.parametrize("name", STACKS)
 def test_released_stack_accelerates_by_holding_couple(name, rotation, rule):
-    """Let go, M q'' is minus the couple, which works on phi + psi, and nothing else."""
+    """After release, M q'' is minus the couple, which does work on phi + psi only."""
     for angle in ANGLES:
         one = held_stack(name, angle, rotation, rule)
         model, mode, x = one.moves()
@@ -374,7 +374,7 @@ def test_static_state_exists_for_all_rotations_below_right_angle(parts, rotation
     state = system.moment_rotation((angles, "rad"))
     for name, row in state.items():
         assert np.isfinite(row.values).all(), name
-    # what turns round with the body
+    # quantities odd in the rotation
     for name in ("restoring_moment", "base_moment", "held_cap_rotation"):
         if name in state:
             np.testing.assert_allclose(state[name], -state[name][::-1], rtol=1e-9, atol=1e-6)

@@ -1,4 +1,4 @@
-"""Statics from the forces of the equations: the closed forms, the energy, and chains of bodies."""
+"""Statics from the forces of the equations: closed forms, energy, and chains of bodies."""
 
 import math
 from itertools import pairwise, product
@@ -49,7 +49,7 @@ ALONE = list(product(BLOCKS, BASES, ("finite", "small")))
 
 
 class Form(NamedTuple):
-    """What a closed form tells: rise and moment of the middle, ends that bear, what shows."""
+    """Results of a closed form: rise and moment at the middle, bearing ends, outputs."""
 
     rise: float
     moment: float
@@ -96,21 +96,21 @@ def test_held_body_matches_closed_forms(block, base, rotation):
         form, found = closed(setting, angle), setting.statics(angle)
         small = rotation == "small"
         sine, cosine = (angle, 1.0) if small else (math.sin(angle), math.cos(angle))
-        h, beside = body.centre_height, body.eccentricity
+        h, eccentricity = body.centre_height, body.eccentricity
         assert found.contact_state == form.contact
         rounding = EXACT * weight * body.half_width
         assert found.base_moment == pytest.approx(form.moment, rel=EXACT, abs=rounding)
-        back = form.moment - weight * (h * sine + beside * cosine)
+        back = form.moment - weight * (h * sine + eccentricity * cosine)
         assert found.restoring_moment == pytest.approx(back, rel=EXACT, abs=rounding)
         rise = 0.5 * h * angle**2 if small else h * (1.0 - math.cos(angle))
-        height = form.rise - rise - beside * sine
+        height = form.rise - rise - eccentricity * sine
         assert found.vertical_displacement == pytest.approx(height, rel=EXACT, abs=1e-14)
         assert found.reactions == pytest.approx(form.reactions, rel=EXACT, abs=1e-8)
 
 
 @pytest.mark.parametrize(("block", "base", "rotation"), ALONE)
 def test_force_slopes_match_declared_stiffnesses(block, base, rotation):
-    """Sizes and steps of runs are measured by these."""
+    """Sizes and steps of runs are scaled by these."""
     support = rf.System(BLOCKS[block], BASES[base], rotation=rotation).setting.support
     numbers, standing = support.base_numbers, support.standing
     link, pose = standing.chain.bodies[0], standing.upright[0]
@@ -202,12 +202,12 @@ MASSES = (1.0, 0.7, 1.6)
 TOPS = (0.0, 0.9, 0.4)
 
 
-def bodies(beside=0.0, along=0.0):
-    """A block on pads on a block on pads on a plate on a bed; eccentric by a share."""
+def bodies(eccentricity=0.0, along=0.0):
+    """Return a block on pads on a block on pads on a plate on a bed; eccentric by a share."""
     shapes = ((2.2, 0.55, 0.12), (0.9, 0.7, 0.05), (0.4, 1.1, 0.0))
     links = []
     for k, (height, half, off) in enumerate(shapes):
-        off *= beside
+        off *= eccentricity
         body = rigid_body(
             left=half + off, right=half - off, height=height, inertia=MASSES[k] * 0.5,
             restraint=CENTRE, small_rotation=False, gravity=G,
@@ -226,7 +226,7 @@ def bodies(beside=0.0, along=0.0):
 
 
 def potential(chain, places):
-    """Return the energy of all weights and bases, with bodies placed by rotation and height."""
+    """Return the energy of all weights and bases for rotations and heights of bodies."""
     point, turned, energy = np.zeros(2), 0.0, 0.0
     top = 0.0
     for link, (rotation, rise), mass, above in reversed(
@@ -247,7 +247,7 @@ def potential(chain, places):
     return energy
 
 
-def least(chain, rotation=None):
+def minimum_energy(chain, rotation=None):
     """Return rotations and heights of least energy, with the highest body held or free."""
     sizes = np.array([1e-3, 1e-3] * 3)
 
@@ -269,11 +269,13 @@ def placed(poses):
     return np.array([[pose.state.rotation, pose.state.vertical] for pose in poses])
 
 
-@pytest.mark.parametrize(("beside", "along"), [(0.0, 0.0), (1.0, 0.0), (0.0, 0.15), (1.0, -0.1)])
-def test_three_bodies_rest_where_their_energy_is_least(beside, along):
-    chain = bodies(beside, along)
+@pytest.mark.parametrize(
+    ("eccentricity", "along"), [(0.0, 0.0), (1.0, 0.0), (0.0, 0.15), (1.0, -0.1)]
+)
+def test_three_bodies_rest_where_their_energy_is_least(eccentricity, along):
+    chain = bodies(eccentricity, along)
     poses = chain.rest()
-    found, energy = least(chain)
+    found, energy = minimum_energy(chain)
     assert placed(poses) == pytest.approx(found, rel=1e-4, abs=1e-6)
     assert potential(chain, placed(poses)) <= energy + 1e-12
     assert chain.moments(poses) == pytest.approx([0.0] * 3, abs=1e-11)
@@ -282,13 +284,13 @@ def test_three_bodies_rest_where_their_energy_is_least(beside, along):
     assert np.linalg.eigvalsh(stiffness).min() > 0.0
 
 
-@pytest.mark.parametrize(("beside", "along"), [(0.0, 0.0), (1.0, -0.1)])
-def test_three_bodies_are_held_where_their_energy_is_least(beside, along):
-    chain = bodies(beside, along)
+@pytest.mark.parametrize(("eccentricity", "along"), [(0.0, 0.0), (1.0, -0.1)])
+def test_three_bodies_are_held_where_their_energy_is_least(eccentricity, along):
+    chain = bodies(eccentricity, along)
     rotations = (0.004, 0.03, 0.08, -0.02, -0.1)
     contacts = set()
     for rotation, poses in zip(rotations, chain.curve(rotations), strict=True):
-        found, energy = least(chain, rotation)
+        found, energy = minimum_energy(chain, rotation)
         assert placed(poses)[:, 0].sum() == pytest.approx(rotation, rel=1e-13)
         assert placed(poses) == pytest.approx(found, rel=1e-4, abs=1e-6)
         assert potential(chain, placed(poses)) <= energy + 1e-12
@@ -311,7 +313,7 @@ def test_the_couple_on_three_bodies_is_the_slope_of_their_energy():
 
 @pytest.mark.parametrize("stiffness", ["1e10 N/m", "2e11 N/m", "1e13 N/m", "1e15 N/m"])
 def test_body_on_nearly_rigid_pads_moves_with_body_below(stiffness):
-    """Pads of very different stiffness: the lower body, eccentric, leans on soft ones."""
+    """Pads of very different stiffness: the eccentric lower body leans on soft ones."""
     soft = rf.TwoSpringSupport(stiffness="1 MN/m", damping_ratio=0.1)
     stiff = rf.TwoSpringSupport(stiffness=stiffness, damping_ratio=0.1)
     above = rf.Block(width="0.7 m", height="0.7 m", mass="400 kg")
@@ -330,14 +332,14 @@ def test_body_on_nearly_rigid_pads_moves_with_body_below(stiffness):
     )
 
 
-# laws of one's own --------------------------------------------------------------------------------
+# user-defined laws --------------------------------------------------------------------------------
 
 
 PROP = 500.0
 
 
 class ProppedPads(ElasticPads):
-    """Pads and a spring under the middle, which carries a part of the weight."""
+    """Pads and a spring under the middle, which carries part of the weight."""
 
     __slots__ = ()
 
@@ -362,7 +364,7 @@ def test_base_with_vertical_thrust_starts_in_equilibrium():
 
 
 def test_dashpots_of_ties_damp_small_motion():
-    """A post under the middle of a block: it stands beside both pads as it moves up and down."""
+    """A post under the middle of a block acts in parallel to both pads in vertical motion."""
     mass, stiffness, damping = 5e3, 4e6, 2e4
     block = rf.Block(width="1 m", height="3 m", mass=f"{mass} kg")
     pads = rf.TwoSpringSupport(stiffness=f"{stiffness} N/m", damping=f"{damping} N s/m")

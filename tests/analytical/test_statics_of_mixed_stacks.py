@@ -1,4 +1,4 @@
-"""Stacks of rigid bases and others held at a rotation, where a corner lifts from a rigid base."""
+"""Stacks on rigid and other bases, held at a rotation that lifts a corner off a rigid base."""
 
 import numpy as np
 import pytest
@@ -45,7 +45,7 @@ def test_restoring_moment_is_continuous_at_lift_off(name):
     assert couple == pytest.approx(np.minimum(couple, lifts), rel=1e-9)
     lifted = state.held_contact_state.values == 2
     assert not lifted[0]
-    assert np.flatnonzero(np.diff(lifted)).size == 1  # and stays so
+    assert np.flatnonzero(np.diff(lifted)).size == 1  # once and for all
     steps = np.abs(np.diff(couple))
     assert steps[lifted[1:] & ~lifted[:-1]].max() <= 1.01 * steps[~lifted[1:]].max()
     opposite = held(*SCENES[name], angles=-angles)
@@ -67,7 +67,7 @@ def test_body_below_carries_weight_at_bearing_corner():
 
 
 def test_stiff_tied_stack_rocks_as_one_body_on_rigid_base():
-    # a statue that is tied down to a block on rigid ground, on stiff pads between them
+    # a statue on stiff pads on a block on rigid ground, tied down to the block
     stiff = rf.TwoSpringSupport(stiffness="400 MN/m", damping_ratio=0.1)
     ties = [
         rf.Restrainer(
@@ -89,13 +89,13 @@ def test_restrainer_pulls_on_lifted_body():
     scene = SCENES["statue on a block on pads"]
     tied, free = held(*scene, tie), held(*scene)
     assert (tied.restoring_moment > free.restoring_moment + 1e3).all()
-    other = held(*scene, tie, angles=-ABOVE_LIFT)  # slack to that side
+    other = held(*scene, tie, angles=-ABOVE_LIFT)  # slack on that side
     np.testing.assert_allclose(other.restoring_moment, -free.restoring_moment, rtol=1e-9)
 
 
 @pytest.mark.parametrize("ratio", [8, 40, 1000])
 def test_highest_body_rocks_about_its_corner_on_stiff_joints(ratio):
-    """From a rotation of some microns over a metre on, far below those that are asked for."""
+    """From a rotation of some microns over a metre, far below the requested ones."""
     block = rf.Block(width="1 m", height="2 m", mass="10 t")
     stiff = rf.TwoSpringSupport(frequency_ratio=1000, damping_ratio=0.1)
     stack = rf.Stack(block, block, block, interfaces=[stiff, stiff])

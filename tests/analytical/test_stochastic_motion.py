@@ -1,6 +1,6 @@
-"""Drawn motions against the model they are drawn from, and against another program's numbers.
+"""Stochastic motions against the model that they sample, and against numbers of SMSIM.
 
-The numbers of the other program are those of SMSIM 6.0, D. M. Boore's own, for magnitude 6.0 at
+Reference numbers are those of SMSIM 6.0, the program of D. M. Boore, for magnitude 6.0 at
 20 km with the parameters of Boore and Thompson (2015) for western North America: its output of
 15 January 2018, ``test-bt15_wna`` among the test data of pyRVT.
 """
@@ -58,9 +58,9 @@ RECORDED = {
 def test_two_corner_source_fits_recorded_long_periods_better(magnitude):
     ratios = {}
     for kind in ("one corner", "two corners", "unless given"):
-        given = {} if kind == "unless given" else {"source": kind}
+        options = {} if kind == "unless given" else {"source": kind}
         motions = {
-            seed: rf.GroundMotion.stochastic(magnitude, "20 km", seed, **given)
+            seed: rf.GroundMotion.stochastic(magnitude, "20 km", seed, **options)
             for seed in range(12)
         }
         spectra = rf.response_spectrum(motions, (PERIODS, "s")).pseudo_spectral_acceleration
@@ -269,7 +269,7 @@ def test_each_power_is_distributed_exponentially():
 
 
 def peak_by_random_vibration(model, power):
-    """Expect the peak after Cartwright and Longuet-Higgins (1956), over the model's duration."""
+    """Return the expected peak of Cartwright and Longuet-Higgins (1956) for the duration."""
     frequency = np.linspace(0.0, 80.0, 80_001)
     rate = 2.0 * math.pi * frequency
     squared = (model.displacement_spectrum(frequency) * rate**power) ** 2
@@ -293,31 +293,31 @@ def test_mean_peak_is_that_of_random_vibration_theory(magnitude, kilometres):
 
 
 @pytest.fixture(scope="module")
-def many():
+def many_motions():
     return [
         rf.GroundMotion.stochastic(6.0, "20 km", seed, source="one corner") for seed in range(200)
     ]
 
 
-def test_mean_peaks_are_those_of_smsim(many):
+def test_mean_peaks_are_those_of_smsim(many_motions):
     mean = {"acceleration": 0.0, "velocity": 0.0, "displacement": 0.0}
-    for motion in many:
+    for motion in many_motions:
         history = rf.measures.velocity_and_displacement(motion)
-        mean["acceleration"] += motion.si.peak / len(many)
-        mean["velocity"] += np.abs(history.ground_velocity.values).max() / len(many)
-        mean["displacement"] += np.abs(history.ground_displacement.values).max() / len(many)
-    # its own way from random vibrations to peaks is good to some per cent
+        mean["acceleration"] += motion.si.peak / len(many_motions)
+        mean["velocity"] += np.abs(history.ground_velocity.values).max() / len(many_motions)
+        mean["displacement"] += np.abs(history.ground_displacement.values).max() / len(many_motions)
+    # its own random vibration theory has an error of some per cent
     assert mean["acceleration"] == pytest.approx(0.810, rel=0.05)
     assert mean["velocity"] == pytest.approx(0.0567, rel=0.06)
     assert mean["displacement"] == pytest.approx(0.0181, rel=0.10)
 
 
-def test_mean_response_spectrum_is_that_of_smsim(many):
+def test_mean_response_spectrum_is_that_of_smsim(many_motions):
     periods, printed = [0.05, 0.1, 0.2, 0.5], [1.291, 1.919, 1.897, 1.155]
     found = np.mean(
         [
             rf.response_spectrum(motion, (periods, "s")).pseudo_spectral_acceleration.values[0]
-            for motion in many[:100]
+            for motion in many_motions[:100]
         ],
         axis=0,
     )
@@ -334,7 +334,7 @@ def test_peaks_grow_with_stress_drop_and_magnitude_and_fall_with_distance():
     assert np.all(np.diff(by_magnitude) > 0.0)
     by_distance = [peaks_over_seeds(replace(SMSIM, distance=1e3 * r), 30) for r in (1, 5, 20, 80)]
     assert np.all(np.diff(by_distance) < 0.0)
-    # near a fault more of it is far away: the peak saturates
+    # the peak saturates near a large fault
     assert by_distance[0] / by_distance[1] < 1.3
 
 
@@ -349,14 +349,17 @@ def test_window_spends_its_energy_within_the_duration():
 
 
 @pytest.mark.long
-def test_significant_duration_is_that_of_the_model(many):
-    found = [rf.intensity_measures(motion).significant_duration_5_95.item() for motion in many[:60]]
+def test_significant_duration_is_that_of_the_model(many_motions):
+    found = [
+        rf.intensity_measures(motion).significant_duration_5_95.item()
+        for motion in many_motions[:60]
+    ]
     assert np.mean(found) == pytest.approx(SMSIM.duration, rel=0.1)
     assert 0.5 * SMSIM.duration < min(found)
     assert max(found) < 1.5 * SMSIM.duration
 
 
-# the ends ------------------------------------------------------------------------------------
+# ends and time steps --------------------------------------------------------------------------
 
 
 @pytest.mark.parametrize(("magnitude", "kilometres"), [(4.0, 5.0), (6.5, 15.0), (8.0, 200.0)])

@@ -1,4 +1,4 @@
-"""Subset simulation against probabilities in closed form, and how often its bounds hold them."""
+"""Subset simulation against probabilities in closed form, and the coverage of its bounds."""
 
 import math
 
@@ -21,7 +21,7 @@ SEEDS = 200
 
 
 def one_side(scores):
-    """Return a sum that is standard normal."""
+    """Return a standard normal sum."""
     return scores.sum(axis=1) / math.sqrt(scores.shape[1])
 
 
@@ -30,7 +30,7 @@ def two_sides(scores):
 
 
 def estimates(demand, size, limit, count, seeds=SEEDS):
-    """Probability, coefficient of variation and bounds, a row for each seed."""
+    """Return probability, coefficient of variation and bounds, a row for each seed."""
     rows = []
     for seed in range(seeds):
         levels = list(
@@ -58,12 +58,12 @@ def test_estimates_and_bounds_match_normal_probabilities(demand, size, probabili
     limit = norm.isf(probability if demand is one_side else 0.5 * probability)
     found, stated, lower, upper = estimates(demand, size, limit, 1000)
     scatter = found.std() / found.mean()
-    # the mean of so many, within three of its standard errors and what levels found by the
-    # samples themselves add, of the order of one over the chains
+    # the mean is within three standard errors, and a bias by levels found from the samples,
+    # of the order of one over the number of chains
     assert found.mean() == pytest.approx(
         probability, rel=3.0 * scatter / math.sqrt(SEEDS) + 5.0 / 100.0
     )
-    # nearly what scatters; the standard error of a scatter of 200 is 5 % of it for normal numbers
+    # nearly the actual scatter; the standard error of a scatter of 200 normal numbers is 5 %
     assert math.sqrt(np.mean(stated**2)) == pytest.approx(scatter, rel=0.25)
     held = int(((lower <= probability) & (probability <= upper)).sum())
     assert held >= binom.ppf(0.001, SEEDS, 0.95)
@@ -107,7 +107,7 @@ def test_first_level_has_binomial_variation():
     )  # fmt: skip
     exceeding = int(level.exceeds.sum())
     assert subset_probability([level]) == exceeding / 2000
-    # that of a binomial share
+    # as for a binomial share
     share = exceeding / 2000
     assert subset_variation([level]) == pytest.approx(
         math.sqrt((1 - share) / share / 1999), rel=1e-9
@@ -124,7 +124,7 @@ PULSE = rf.GroundMotion.half_sine_pulse("4 m/s^2", f"{DURATION} s")
 
 
 def critical_amplitude():
-    """Half-sine pulse that leaves a block of small rotation at its unstable equilibrium.
+    """Return the half-sine pulse that leaves a linearised block at its unstable equilibrium.
 
     The part of the motion that grows, theta - alpha + theta'/p, has the rate p times itself and
     p a/g; it starts at -alpha when the block lifts off, and must reach zero by the end of the
@@ -146,7 +146,7 @@ def critical_amplitude():
 
 
 @pytest.mark.long
-# of few families too the bounds must hold
+# the bounds must also hold for few chains
 @pytest.mark.filterwarnings("ignore:.*hardly known:rockframe.errors.ModelWarning")
 # of 1e-3 and 1e-6
 @pytest.mark.parametrize(
@@ -163,7 +163,7 @@ def test_overturning_probability_under_pulse_of_random_size(dispersion, cases, s
         )  # fmt: skip
         ends = (float(one[f"exceedance_probability_{end}_bound"]) for end in ("lower", "upper"))
         rows.append((float(one.exceedance_probability), *ends))
-        # whatever overturns is beyond the amplitude of the closed form
+        # runs overturn beyond the amplitude of the closed form
         falls = np.isinf(one.demand)
         assert float(one.scale.where(falls).min()) * 4.0 > critical_amplitude() * (1 - 1e-6)
         assert float(one.scale.where(~falls).max()) * 4.0 < critical_amplitude() * (1 + 1e-6)

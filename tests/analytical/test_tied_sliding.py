@@ -1,4 +1,4 @@
-"""Blocks that slide with ties: limits, closed forms, mirror images, energies, and what is told."""
+"""Sliding blocks with ties: limits, closed forms, symmetry, energies, and warnings."""
 
 import math
 
@@ -22,7 +22,7 @@ GRAVITY = 9.80665
 
 
 def ties(sign=1.0, **changed):
-    """A slack tie at mid-height, and an anchor that yields, on either side."""
+    """Return a slack tie at mid-height and a yielding anchor on either side."""
     upper = rf.Restrainer(
         on=(f"{-0.5 * sign} m", "2 m"), to=(f"{-1.2 * sign} m", "2 m"), name="upper",
         **{"stiffness": "60 kN/m", "slack": "5 mm", "damping": "200 N s/m", **changed},
@@ -43,7 +43,7 @@ def run(base, *others, sign=1.0, block=BLOCK, accuracy="reference", **options):
     )
 
 
-def kinds_of(found):
+def event_kinds(found):
     names = found.event_kind.attrs["flag_meanings"].split()
     return [names[kind - 1] for kind in found.event_kind.values]
 
@@ -51,7 +51,7 @@ def kinds_of(found):
 @pytest.mark.long
 @BASES
 def test_infinite_friction_holds_base(base):
-    """To rounding; on rigid ground the equations are others, and what happens at once is so."""
+    """Up to rounding; equations on rigid ground and simultaneous events differ."""
     endless = {"friction": 1e9}
     if base is GROUND:
         endless |= {"kinetic_friction": 0.5, "impact": "stick"}
@@ -60,11 +60,11 @@ def test_infinite_friction_holds_base(base):
     assert held.peak_rotation > 1e-3
     assert far.attrs["verdict"].startswith("Did not slide")
     assert abs(far.rotation - held.rotation).max() < 1e-11 * held.peak_rotation
-    # up to rest, from which a tie that has no length to spare is taut or slack by rounding
-    last = kinds_of(held).index("rest") if "rest" in kinds_of(held) else None
+    # up to rest, after which a tie without slack is taut or slack by rounding
+    last = event_kinds(held).index("rest") if "rest" in event_kinds(held) else None
     first = [one.event_time.values[:last] for one in (far, held)]
     np.testing.assert_allclose(*first, rtol=0.0, atol=1e-8)
-    assert sorted(kinds_of(far)[:last]) == sorted(kinds_of(held)[:last])
+    assert sorted(event_kinds(far)[:last]) == sorted(event_kinds(held)[:last])
 
 
 @pytest.mark.long
@@ -77,7 +77,7 @@ def test_slack_tie_changes_nothing(base, stiffness):
     assert free.peak_slip > 1e-3
     for name in ("slip", "rotation"):
         assert abs(slack[name] - free[name]).max() <= 1e-12 * abs(free[name]).max()
-    assert kinds_of(slack) == kinds_of(free)
+    assert event_kinds(slack) == event_kinds(free)
     assert slack.peak_restrainer_force == 0.0
 
 
@@ -97,14 +97,14 @@ def test_mirror_images_are_the_same(base):
 def test_energy_balances_with_ties_and_friction(base):
     found = run(base.replace(friction=0.15, kinetic_friction=0.1), *ties())
     assert found.peak_slip > 1e-3
-    assert {"slip", "restrainer_taut", "restrainer_yield"} <= set(kinds_of(found))
+    assert {"slip", "restrainer_taut", "restrainer_yield"} <= set(event_kinds(found))
     assert found.energy_residual < 1e-8
     assert (np.diff(found.dissipated_energy) >= -1e-9 * found.dissipated_energy.max().item()).all()
     assert found.elastic_energy.max() > found.elastic_energy[0]
 
 
 def bar(stiffness, **changed):
-    """A bar at the height of the centre of mass of the low block, which stays level."""
+    """Return a bar at the centre of mass of the low block, which stays level."""
     at = {"on": ("1 m", "0.5 m"), "to": ("3 m", "0.5 m")}
     return rf.Restrainer(stiffness=f"{stiffness!r} N/m", compression=True, **at, **changed)
 
@@ -115,7 +115,7 @@ def steady(acceleration, duration=2.0):
 
 
 def test_tied_slide_shows_coulomb_decay():
-    """Each half of a vibration ends 2 mu g/omega^2 nearer to where the spring balances the push."""
+    """Each half cycle ends 2 mu g/omega^2 closer to the balance of spring and push."""
     stiffness, friction, push = 2e4, 0.1, 6.0
     rate, grip = math.sqrt(stiffness / 1e3), friction * GRAVITY
     system = rf.System(LOW, rf.RigidGround(friction=friction), bar(stiffness))
@@ -125,7 +125,7 @@ def test_tied_slide_shows_coulomb_decay():
     expected = half * np.arange(1, 1 + turns.sum())
     np.testing.assert_allclose(found.event_time.values[turns], expected, rtol=0.0, atol=1e-9)
     np.testing.assert_allclose(found.peak_slip, 2.0 * (push - grip) / rate**2, rtol=1e-9)
-    # of the place of balance: push - grip, less 2 grip at each turn, until friction holds it
+    # from the balance: push - grip, less 2 grip at each reversal, until friction holds
     swing, place, sense = (push - grip) / rate**2, 0.0, 1.0
     while True:
         place += sense * 2.0 * swing
@@ -143,7 +143,7 @@ def test_slip_before_and_after_tie_fracture_in_closed_form():
         bar(stiffness, strength=f"{strength!r} N", brittle=True),
     )  # fmt: skip
     found = system.simulate(steady(-push, 0.5), duration="0.4 s", accuracy="reference")
-    ((breaks,),) = (found.event_time.values[np.array(kinds_of(found)) == "restrainer_fracture"],)
+    ((breaks,),) = (found.event_time.values[np.array(event_kinds(found)) == "restrainer_fracture"],)
     rate, pull = math.sqrt(stiffness / 1e3), push - friction * GRAVITY
     broken_at = strength / stiffness
     when = math.acos(1.0 - broken_at * rate**2 / pull) / rate
@@ -156,7 +156,7 @@ def test_slip_before_and_after_tie_fracture_in_closed_form():
 
 
 def test_tie_fractures_after_uplift_time_of_free_block():
-    """A tie that presses the block down near its corner takes its grip with it."""
+    """A tie that presses the block on its corner increases friction until it breaks."""
     tie = rf.Restrainer(
         on=("0.4 m", "3 m"), to=("0.4 m", "-2 m"), stiffness="400 kN/m", preload="4 kN",
         strength="5 kN", brittle=True,
@@ -165,7 +165,7 @@ def test_tie_fractures_after_uplift_time_of_free_block():
     found = rf.System(BLOCK, ground, tie).simulate(
         steady(-6.5, 0.6), duration="0.6 s", accuracy="reference", outputs=("energy", "reaction")
     )
-    assert kinds_of(found) == ["uplift", "restrainer_fracture", "slip"]
+    assert event_kinds(found) == ["uplift", "restrainer_fracture", "slip"]
     _, broken, slides = found.event_time.values
     assert slides == broken
     needed = abs(found.base_shear / found.vertical_reaction)
@@ -178,7 +178,7 @@ def test_tie_fractures_after_uplift_time_of_free_block():
 
 @pytest.mark.parametrize("stiffness", [1e6, 1e8])
 def test_very_stiff_tie_holds_sliding_corner(stiffness):
-    """By half the slip that a spring of that stiffness allows, at each stiffness."""
+    """Within half the slip that a spring of that stiffness allows."""
     start = rf.InitialState(rotation="0.1 rad")
     options = {"duration": "0.15 s", "initial": start, "accuracy": "reference"}
     held = rf.System(BLOCK, rf.RigidGround(friction=10.0, kinetic_friction=0.5)).simulate(**options)
@@ -218,9 +218,9 @@ def test_sliding_block_with_wall_and_load():
     assert alone.peak_slip > 1e-3
 
 
-def stack_with_ties(friction, of_joint, **changed):
-    """Return two blocks with ties, of one to the other and to the ground."""
-    joint = rf.TwoSpringSupport(frequency_ratio=15, damping_ratio=0.2, friction=of_joint)
+def stack_with_ties(friction, joint_friction, **changed):
+    """Return two blocks with ties to each other and to the ground."""
+    joint = rf.TwoSpringSupport(frequency_ratio=15, damping_ratio=0.2, friction=joint_friction)
     upper = rf.Block(width="0.8 m", height="1.5 m", mass="500 kg")
     stack = rf.Stack(upper, BLOCK.replace(height="1 m"), interfaces=[joint.replace(**changed)])
     tie = rf.Restrainer(
@@ -242,14 +242,14 @@ def test_a_stack_slides_with_ties():
 
 @pytest.mark.long
 def test_infinite_friction_holds_bases_of_stack():
-    """A restitution acts on bases that friction holds, and otherwise on held ones."""
+    """Restitution is one, since it acts differently on bases held by friction and on held ones."""
     bare, held = (
         run(*parts, restraint="leading-corner", **block)
         for block, parts in (
             stack_with_ties(friction, friction, restitution=1.0) for friction in (None, 1e9)
         )
     )
-    # up to a flight, from which a body that friction takes hold of comes to rest in a while
+    # up to a flight, after which a body with friction comes to rest only after a while
     apart = abs(held.rotation - bare.rotation).sel(time=slice(0.0, 1.1)).max()
     assert apart < 1e-12 * bare.peak_rotation
 
@@ -278,7 +278,7 @@ def test_checked_friction_holds_and_reports_would_slide(base):
 
 @pytest.mark.parametrize("seed", [1, 2])
 def test_block_coming_to_rest_while_sliding_gains_no_energy(seed):
-    """Bounces give the momentum upwards that is left, and friction takes its part of that."""
+    """Bounces transmit the remaining vertical momentum, which limits friction."""
     rng = np.random.default_rng(seed)
     across = 5.0 * np.convolve(rng.normal(size=100), np.ones(6) / 6.0**0.5, "same")
     motion = rf.GroundMotion.from_arrays(
@@ -293,5 +293,5 @@ def test_block_coming_to_rest_while_sliding_gains_no_energy(seed):
     found = rf.System(block, ground, tie).simulate(
         motion, outputs=("energy",), output_step="1 ms", second_look=False
     )
-    assert kinds_of(found).count("rest") > 2
+    assert event_kinds(found).count("rest") > 2
     assert np.diff(found.impact_energy.to_numpy()).min() >= -1e-14 * found.kinetic_energy.max()

@@ -1,4 +1,4 @@
-"""Two horizontal components against SciPy, rotated motions, closed forms and another library."""
+"""Two horizontal components against SciPy, rotated motions, closed forms and pyRotD."""
 
 import math
 
@@ -50,7 +50,7 @@ STEP = 0.0025
 
 
 def components() -> tuple[np.ndarray, np.ndarray]:
-    """Sums of sines below 9 Hz that rise and fade."""
+    """Return sums of sines below 9 Hz that rise and fade."""
     time = np.arange(0.0, 20.0, STEP)
     envelope = (time / 4.0) ** 2 * np.exp(2.0 - time / 2.0)
     first = sum(
@@ -64,7 +64,7 @@ def components() -> tuple[np.ndarray, np.ndarray]:
     return 0.5 * envelope * first, 0.4 * envelope * second
 
 
-def made() -> rf.HorizontalPair:
+def synthetic_pair() -> rf.HorizontalPair:
     return rf.HorizontalPair(
         *(rf.GroundMotion.from_arrays((one, "m/s^2"), f"{STEP} s") for one in components())
     )
@@ -75,19 +75,19 @@ def noise(seed: int, count: int = 300) -> rf.GroundMotion:
     return rf.GroundMotion.from_arrays((samples, "m/s^2"), "0.02 s", name=f"noise {seed}")
 
 
-def recorded() -> rf.HorizontalPair:
+def recorded_pair() -> rf.HorizontalPair:
     pair = rf.HorizontalPair.read(record_path("GEONET_20180212_211557_WPWS_20.V2A"))
-    # that library takes a record for band-limited, not for straight between its samples
+    # pyrotd takes a record as band-limited, not as linear between its samples
     return rf.HorizontalPair(pair.first.resampled("0.0025 s"), pair.second.resampled("0.0025 s"))
 
 
 @pytest.mark.parametrize("which", PYROTD)
 def test_rotated_spectra_match_stored_pyrotd_values(which):
-    pair = made() if which == "made" else recorded()
+    pair = synthetic_pair() if which == "made" else recorded_pair()
     found = rf.rotated_spectrum(pair, (PERIODS, "s"))
     for name, expected in PYROTD[which].items():
         np.testing.assert_allclose(found[name].values[0], expected, rtol=0.005, err_msg=name)
-    # the library's own average is that of its ordinates
+    # the average over its own ordinates
     average = rf.average_spectral_acceleration(pair, (PERIODS, "s"))
     for name, mine in (
         (NAMES[0], "average_median_rotated_acceleration"),
@@ -103,14 +103,14 @@ def test_rotated_spectra_match_installed_pyrotd():
     theirs = pyrotd.calc_rotated_spec_accels(
         STEP, *padded, 1.0 / PERIODS, 0.05, percentiles=[50, 100], max_freq_ratio=60
     )
-    found = rf.rotated_spectrum(made(), (PERIODS, "s"))
+    found = rf.rotated_spectrum(synthetic_pair(), (PERIODS, "s"))
     for name, percentile in zip(NAMES, (50, 100), strict=False):
         expected = theirs.spec_accel[theirs.percentile == percentile]
         np.testing.assert_allclose(found[name].values[0], expected, rtol=0.005)
 
 
 def displacement(samples: np.ndarray, step: float, period: float, damping: float) -> np.ndarray:
-    """Return that of an oscillator under straight lines and then still ground, by SciPy."""
+    """Return the displacement of an oscillator under a piecewise linear motion, by SciPy."""
     omega = 2.0 * np.pi / period
     parts = max(10, math.ceil(200.0 * step / period))
     time = np.arange(0.0, (samples.size - 1) * step + 4.0 * period, step / parts)
@@ -170,7 +170,7 @@ def test_rotated_spectrum_matches_spectra_of_rotated_motions():
 
 
 def test_motion_in_one_direction_only():
-    """Of a motion in one direction RotD50 is that of the cosine, RotD100 the motion's own."""
+    """RotD50 has the factor of the median cosine, RotD100 equals the spectrum of the motion."""
     motion = noise(4)
     angle = math.radians(30.0)
     pair = rf.HorizontalPair(motion.scaled(math.cos(angle)), motion.scaled(math.sin(angle)))
@@ -238,7 +238,7 @@ def test_rotation_to_azimuth_includes_vertical_component():
     assert north.vertical_acceleration is not None
     angle = math.radians(196.0)
     first, second = (one.samples for one in pair.signals)
-    # S16W points to 196 degrees, S74E to 106: north is where both cosines say
+    # S16W points to 196 degrees, S74E to 106: components by their cosines
     expected = math.cos(angle) * first + math.cos(math.radians(106.0)) * second
     np.testing.assert_allclose(north.si.horizontal.samples, expected, atol=1e-12)
 
@@ -261,11 +261,11 @@ def test_compiled_and_uncompiled_spectra_agree(monkeypatch):
     pulse = rf.GroundMotion.sine_pulse("1 m/s^2", "1 Hz")
     periods = (np.concatenate([[0.0], np.geomspace(0.01, 20.0, 7)]), "s")
     for pair in (record, (pulse, pulse.scaled(0.3))):
-        asked = rf.HorizontalPair(*pair), periods, (0.0, 0.05)
-        compiled = rf.rotated_spectrum(*asked, directions=20)
+        arguments = rf.HorizontalPair(*pair), periods, (0.0, 0.05)
+        compiled = rf.rotated_spectrum(*arguments, directions=20)
         with monkeypatch.context() as patch:
             patch.setattr(spectra, "COMPILED", False)
-            plain = rf.rotated_spectrum(*asked, directions=20)
+            plain = rf.rotated_spectrum(*arguments, directions=20)
         assert plain.data_vars.keys() == compiled.data_vars.keys()
         for name, one in compiled.data_vars.items():
             np.testing.assert_allclose(
@@ -285,7 +285,7 @@ def test_compiled_and_uncompiled_spectra_agree(monkeypatch):
         (lambda: rf.rotated_spectrum(noise(1)), "pair needs two horizontal components"),
         (lambda: rf.rotated_spectrum({}), "found no motions"),
         (lambda: rf.rotated_spectrum({"a": noise(1)}), "those of a suite are suite.pairs"),
-        (lambda: rf.rotated_spectrum(made(), directions=181), "directions must be even"),
+        (lambda: rf.rotated_spectrum(synthetic_pair(), directions=181), "directions must be even"),
         (lambda: rf.measures.principal_axes("pair"), "pair needs two horizontal components"),
         (lambda: rf.average_spectral_acceleration(noise(1), None), "periods must be given"),
         (lambda: rf.average_spectral_acceleration(noise(1), ["0 s"]), "above zero"),
@@ -298,16 +298,18 @@ def test_invalid_pairs_are_refused(make, words):
 
 
 def test_pair_requires_matching_azimuths_and_start_times():
-    def told(**metadata) -> rf.GroundMotion:
+    def metadata_motion(**metadata) -> rf.GroundMotion:
         motion = noise(1)
         return rf.GroundMotion(motion.si, metadata=metadata)
 
-    rf.HorizontalPair(told(azimuth=10), told(azimuth=100))
-    rf.HorizontalPair(told(azimuth=350.5), told(azimuth=260))
+    rf.HorizontalPair(metadata_motion(azimuth=10), metadata_motion(azimuth=100))
+    rf.HorizontalPair(metadata_motion(azimuth=350.5), metadata_motion(azimuth=260))
     with pytest.raises(ComponentError, match="point to 10° and 90°"):
-        rf.HorizontalPair(told(azimuth=10), told(azimuth=90))
+        rf.HorizontalPair(metadata_motion(azimuth=10), metadata_motion(azimuth=90))
     with pytest.raises(ComponentError, match="first starts at 10:00, second at 10:01"):
-        rf.HorizontalPair(told(record_time="10:00"), told(record_time="10:01"))
+        rf.HorizontalPair(
+            metadata_motion(record_time="10:00"), metadata_motion(record_time="10:01")
+        )
 
 
 def test_vertical_motion_of_only_one_component_warns():

@@ -1,4 +1,4 @@
-"""Full contact with a bed is linear: Eq. (18), frequencies, and what else moves alike."""
+"""Full contact with a bed is linear: Eq. (18), frequencies, and equivalent two-spring supports."""
 
 import math
 from dataclasses import replace
@@ -28,7 +28,7 @@ BEDS = [
 ]
 
 
-def worst(found, expected):
+def relative_error(found, expected):
     return np.abs(found - expected).max() / np.abs(expected).max()
 
 
@@ -72,7 +72,7 @@ def test_soil_too_soft_to_hold_the_block_has_no_rocking_frequency():
 
 
 def test_overdamped_modes_are_separated():
-    """Damping in proportion to stiffness: each mode is an oscillator of its own."""
+    """With damping proportional to stiffness each mode is an oscillator."""
     rng = np.random.default_rng(4)
     shapes = np.linalg.qr(rng.normal(size=(4, 4)))[0]
     frequencies = np.array([1.0, 2.0, 3.0, 5.0])
@@ -108,8 +108,10 @@ def test_cap_mass_from_density_uses_its_own_width():
     block = rf.Block(width="2.4 m", height="9.6 m", mass="50 t")
     soil = rf.WinklerSoil(stiffness="9 MPa", damping_ratio=0.15)
     dense, heavy = (
-        rf.System(block, rf.CushionCap(width="3.2 m", height="0.7 m", **given), soil).frequencies()
-        for given in ({"density": "2500 kg/m^3", "depth": "4 m"}, {"mass": "22.4 t"})
+        rf.System(
+            block, rf.CushionCap(width="3.2 m", height="0.7 m", **options), soil
+        ).frequencies()
+        for options in ({"density": "2500 kg/m^3", "depth": "4 m"}, {"mass": "22.4 t"})
     )
     assert dense.angular_frequency.values == pytest.approx(heavy.angular_frequency.values)
 
@@ -139,7 +141,7 @@ def test_frequencies_of_block_and_cap_as_one_body():
 @pytest.mark.parametrize("separation", SEPARATIONS)
 @pytest.mark.parametrize("bed", BEDS)
 def test_tiny_free_rocking_is_one_damped_oscillator(bed, separation):
-    # the vertical motion that goes with it is of second order
+    # the accompanying vertical motion is of second order
     start = (2e-8, -3e-8)
     response = (
         replace(bed, separation=separation)
@@ -155,8 +157,8 @@ def test_tiny_free_rocking_is_one_damped_oscillator(bed, separation):
     )
     angle, turn = oscillator(bed.omega_r, bed.rocking_damping, np.zeros(601), STEP, start)
     assert (response.contact_state.values == 0).all()
-    assert worst(response.rotation.values, angle) < 1e-9
-    assert worst(response.angular_velocity.values, turn) < 1e-9
+    assert relative_error(response.rotation.values, angle) < 1e-9
+    assert relative_error(response.angular_velocity.values, turn) < 1e-9
     assert np.abs(response.vertical_displacement.values).max() < 1e-13
 
 
@@ -179,14 +181,14 @@ def test_free_vertical_vibration_is_one_damped_oscillator(bed, separation):
     decay = 2.0 * bed.damping_ratio * bed.omega_v
     rise, speed = oscillator(bed.omega_v, decay, np.zeros(601), STEP, start)
     assert (response.contact_state.values == 0).all()
-    assert worst(response.vertical_displacement.values, rise) < 1e-9
-    assert worst(response.vertical_velocity.values, speed) < 1e-9
+    assert relative_error(response.vertical_displacement.values, rise) < 1e-9
+    assert relative_error(response.vertical_velocity.values, speed) < 1e-9
 
 
 @pytest.mark.parametrize("rotation", ["finite", "small"])
 @pytest.mark.parametrize("bed", BEDS)
 def test_vertical_motion_alone_is_one_damped_oscillator(bed, rotation):
-    """As far as full contact goes, not only near rest."""
+    """In all of full contact, not only near rest."""
     peak = 0.1 * bed.gravity if bed.damping_ratio == 0.0 else 0.4 * bed.gravity
     upwards = rough_record(401, STEP, peak, seed=11)
     motion = rf.GroundMotion.from_arrays(
@@ -197,11 +199,11 @@ def test_vertical_motion_alone_is_one_damped_oscillator(bed, rotation):
     rise, speed = oscillator(bed.omega_v, decay, -upwards, STEP)
     assert np.abs(rise).max() > 0.02 * bed.delta
     assert (response.contact_state.values == 0).all()
-    assert worst(response.vertical_displacement.values, rise) < 1e-9
-    assert worst(response.vertical_velocity.values, speed) < 1e-9
+    assert relative_error(response.vertical_displacement.values, rise) < 1e-9
+    assert relative_error(response.vertical_velocity.values, speed) < 1e-9
     assert (response.rotation.values == 0.0).all()
     pressed = bed.omega_v**2 * (bed.delta - rise) - decay * speed
-    assert worst(response.soil_reaction.values, bed.mass * pressed) < 1e-9
+    assert relative_error(response.soil_reaction.values, bed.mass * pressed) < 1e-9
     assert (response.contact_length.values == 2.0 * bed.half_width).all()
 
 
@@ -209,17 +211,17 @@ def test_vertical_motion_alone_is_one_damped_oscillator(bed, rotation):
 @pytest.mark.parametrize("rotation", ["finite", "small"])
 @pytest.mark.parametrize("bed", BEDS)
 def test_weak_horizontal_motion_is_one_damped_oscillator(bed, rotation, rule):
-    # what is left out is of second order in the rotation, and of first order where the
-    # leading corner is held (x' = h + b |a|): the motion is so weak that neither shows
+    # the neglected terms are of second order in the rotation, and of first order where the
+    # leading corner is held (x' = h + b |a|): both are negligible in so weak a motion
     across = rough_record(401, STEP, 1e-5 if rule == "leading-corner" else 1e-4, seed=12)
     motion = rf.GroundMotion.from_arrays((across, "m/s^2"), f"{STEP} s")
     response = bed.system(rotation=rotation, restraint=rule).simulate(motion, accuracy="reference")
     force = -bed.half_height * across / bed.base_inertia
     angle, turn = oscillator(bed.omega_r, bed.rocking_damping, force, STEP)
     assert 1e-10 < np.abs(angle).max() < 1e-5
-    assert worst(response.rotation.values, angle) < 3e-8
-    assert worst(response.angular_velocity.values, turn) < 3e-8
-    assert worst(response.horizontal_displacement.values, bed.half_height * angle) < 1e-6
+    assert relative_error(response.rotation.values, angle) < 3e-8
+    assert relative_error(response.angular_velocity.values, turn) < 3e-8
+    assert relative_error(response.horizontal_displacement.values, bed.half_height * angle) < 1e-6
     assert (response.contact_state.values == 0).all()
 
 
@@ -230,7 +232,7 @@ def test_weak_horizontal_motion_is_one_damped_oscillator(bed, rotation, rule):
 @pytest.mark.parametrize("rule", ["contact-state", "centre"])
 @pytest.mark.parametrize("damping_ratio", [0.0, 0.2])
 def test_springs_at_gauss_points_match_bed(damping_ratio, rule, rotation):
-    """k = b k0 and c = b c0 at b/sqrt(3): the same resultants as long as all of the base bears."""
+    """k = b k0 and c = b c0 at b/sqrt(3): the same resultants in full contact."""
     bed = Bed(damping_ratio=damping_ratio)
     apart = bed.half_width / math.sqrt(3.0)
     narrow = rf.Block(
@@ -260,9 +262,9 @@ def test_springs_at_gauss_points_match_bed(damping_ratio, rule, rotation):
     assert np.abs(other.rotation.values).max() > 1e-3
     for name in ("rotation", "angular_velocity", "vertical_displacement", "vertical_velocity",
                  "horizontal_displacement"):  # fmt: skip
-        assert worst(one[name].values, other[name].values) < 1e-9, name
+        assert relative_error(one[name].values, other[name].values) < 1e-9, name
     both = one.left_reaction.values + one.right_reaction.values
-    assert worst(both, other.soil_reaction.values) < 1e-9
+    assert relative_error(both, other.soil_reaction.values) < 1e-9
 
 
 # block, pads, cap and soil --------------------------------------------------------------------
@@ -288,7 +290,7 @@ def stack(**options):
 
 
 def linearised():
-    """Mass, damping and stiffness of (Y, phi, r, psi) at rest, from a Lagrangian."""
+    """Return mass, damping and stiffness of (Y, phi, r, psi) at rest, from a Lagrangian."""
     names = "b h m i k c bc hc mc ic k0 c0 g"
     b, h, m, i, k, c, bc, hc, mc, ic, k0, c0, g = sp.symbols(names, positive=True)
     q = sp.Matrix(sp.symbols("Y phi r psi"))
@@ -352,7 +354,7 @@ def test_modes_of_block_and_cap_are_those_of_their_lagrangian(linear, rotation, 
 
 
 def test_shapes_of_the_modes_without_damping(linear):
-    """Heights and rotations of block and cap, each mode's largest being 1."""
+    """Heights and rotations of block and cap, with the largest of each mode scaled to 1."""
     mass, _, stiffness = linear
     rates, shapes = np.linalg.eigh(np.linalg.solve(np.linalg.cholesky(mass), np.linalg.solve(
         np.linalg.cholesky(mass), stiffness).T))  # fmt: skip
@@ -398,7 +400,7 @@ def test_a_tiny_free_vibration_of_block_and_cap_is_linear(linear, rotation):
         "vertical_displacement": rise + lift,
         "angular_velocity": states[:, 5] + states[:, 7],
     }.items():
-        assert worst(response[name].values, expected) < 1e-6, name
+        assert relative_error(response[name].values, expected) < 1e-6, name
     assert (response.contact_state.values == 0).all()
     assert (response.soil_contact_state.values == 0).all()
 
@@ -424,7 +426,7 @@ def test_weak_motion_of_block_and_cap_is_linear(linear):
     for i in range(400):
         slope = (forces[:, i + 1] - forces[:, i]) / STEP
         states[i + 1] = ahead @ np.concatenate([states[i], forces[:, i], slope])
-    assert worst(response.cap_rotation.values, states[:, 1]) < 1e-6
-    assert worst(response.rotation_on_cap.values, states[:, 3]) < 1e-6
-    assert worst(response.cap_vertical_displacement.values, states[:, 0]) < 1e-6
-    assert worst(response.vertical_displacement_on_cap.values, states[:, 2]) < 1e-6
+    assert relative_error(response.cap_rotation.values, states[:, 1]) < 1e-6
+    assert relative_error(response.rotation_on_cap.values, states[:, 3]) < 1e-6
+    assert relative_error(response.cap_vertical_displacement.values, states[:, 0]) < 1e-6
+    assert relative_error(response.vertical_displacement_on_cap.values, states[:, 2]) < 1e-6

@@ -26,7 +26,7 @@ def held(system, angles):
     return system.moment_rotation((list(angles), "rad"))
 
 
-def slowly(bed, sine, cosine):
+def numerical_bed(bed, sine, cosine):
     """Integrate a bed of 20 000 strips that carries the weight, numerically."""
     s = (np.arange(20000) + 0.5) / 10000.0 * bed.half_width - bed.half_width
 
@@ -106,7 +106,7 @@ def test_against_many_strips(bed, rotation):
     for angle in (0.5 * bed.delta / bed.half_width, 0.02, 0.2, 0.6):
         sine, cosine = (angle, 1.0) if rotation == "small" else (math.sin(angle), math.cos(angle))
         rise = 0.5 * angle**2 if rotation == "small" else 1.0 - math.cos(angle)
-        middle, moment, share = slowly(bed, sine, cosine)
+        middle, moment, share = numerical_bed(bed, sine, cosine)
         state = held(system, [angle]).isel(angle=0)
         found = state.held_vertical_displacement.item() + bed.half_height * rise
         assert found == pytest.approx(middle, abs=1e-8 * bed.half_width)
@@ -123,7 +123,7 @@ def test_moment_vanishes_at_overturning_angle_on_firm_soil():
         middle = 0.5 * (low + high)
         back = held(firm.system(), [middle]).restoring_moment.item() > 0.0
         low, high = (middle, high) if back else (low, middle)
-    # the contact is 2 sqrt(b delta/sin theta) long, and the weight acts a third of that from
+    # the contact is 2 sqrt(b delta/sin theta) long, and its force acts at a third of that from
     # the end
     short = 2.0 / 3.0 * math.sqrt(firm.half_width * firm.delta / math.sin(theta))
     assert middle == pytest.approx(
@@ -158,7 +158,7 @@ def test_block_and_cap_stand_as_one_body():
 @pytest.mark.parametrize("rotation", ["small", "finite"])
 @pytest.mark.parametrize("bed", BEDS)
 def test_the_equations_of_motion_balance_at_the_static_state(bed, rotation, rule, separation):
-    """Held in place, the body only turns, and that as fast as the moment says."""
+    """A held body that is released only rotates, accelerated by the moment."""
     system = replace(bed, separation=separation).system(rotation=rotation, restraint=rule)
     model = system.setting.compile()
     uplift = bed.delta / bed.half_width
@@ -176,7 +176,7 @@ def test_the_equations_of_motion_balance_at_the_static_state(bed, rotation, rule
         inertia = bed.mass * (bed.inertia + reach**2)
         expected = -state.restoring_moment.item() / inertia
         assert turn[0] == pytest.approx(expected, rel=1e-9, abs=1e-11)
-        # and the run itself starts there
+        # the run also starts there
         _, equilibrium, _ = at_rest(model, angle, None)
         assert equilibrium[1] == pytest.approx(height, rel=1e-12, abs=1e-14)
 
@@ -184,7 +184,7 @@ def test_the_equations_of_motion_balance_at_the_static_state(bed, rotation, rule
 @pytest.mark.parametrize("rotation", ["small", "finite"])
 @pytest.mark.parametrize("bed", BEDS)
 def test_the_moment_is_the_slope_of_the_energy(bed, rotation):
-    """Work of the holding couple: no equation of motion is needed for it."""
+    """The work of the holding couple, without equations of motion."""
     system = bed.system(rotation=rotation)
     model = system.setting.compile()
 
@@ -203,7 +203,7 @@ def test_the_moment_is_the_slope_of_the_energy(bed, rotation):
 
 @pytest.mark.parametrize("rotation", ["small", "finite"])
 def test_moment_vanishes_at_neutral_soil_stiffness(rotation):
-    """On soil just firm enough the upright body is in neutral balance up to second order."""
+    """On soil just stiff enough the upright body is in neutral equilibrium up to second order."""
     bed = Bed()
     limit = 1.5 * bed.gravity * bed.half_height / bed.half_width**3
     neutral = replace(bed, stiffness=limit * (1.0 + 1e-12))

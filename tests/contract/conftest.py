@@ -1,4 +1,4 @@
-"""The battery's axes."""
+"""Scenes and motions of tests that cover all of them."""
 
 from functools import cache
 
@@ -8,25 +8,28 @@ from contract.scenes import MOTIONS, SCENES
 
 @pytest.fixture(params=list(SCENES))
 def scene(request):
-    """Return the name of a scene; SCENES makes it."""
+    """Return the name of a scene in SCENES."""
     return request.param
 
 
-# the others, with and without vertical motion changed about, in the long run
-FEW = ("pulse and vertical", "record")
+# the other motions run in the long tests
+SHORT_MOTIONS = ("pulse and vertical", "record")
 
 
 @pytest.fixture(
-    params=[name if name in FEW else pytest.param(name, marks=pytest.mark.long) for name in MOTIONS]
+    params=[
+        name if name in SHORT_MOTIONS else pytest.param(name, marks=pytest.mark.long)
+        for name in MOTIONS
+    ]
 )
 def motion_name(request):
-    """Return the name of a motion; MOTIONS makes it."""
+    """Return the name of a motion in MOTIONS."""
     return request.param
 
 
 @pytest.fixture
 def response(scene, motion_name):
-    """Return the response of a scene to a motion, with everything that can be asked for."""
+    """Return the response of a scene to a motion, with all outputs."""
     return _run(scene, motion_name).copy(deep=True)
 
 

@@ -1,4 +1,4 @@
-"""Every scene that can be assembled, small enough to run the whole battery over each."""
+"""Every scene that can be assembled, small enough for tests that cover all of them."""
 
 import math
 from itertools import product
@@ -23,8 +23,8 @@ def cap(**changed):
 
 
 def soil(separation="displacement", **changed):
-    given = {"stiffness": "30 MPa", "damping_ratio": 0.1, "separation": separation}
-    return rf.WinklerSoil(**{**given, **changed})
+    arguments = {"stiffness": "30 MPa", "damping_ratio": 0.1, "separation": separation}
+    return rf.WinklerSoil(**{**arguments, **changed})
 
 
 def two_spring(rule, rotation):
@@ -58,7 +58,7 @@ def stacked(coupling, rule, rotation, separation):
     )  # fmt: skip
 
 
-# each rule, each kinematics and each separation stands in some scene of each model
+# each rule, kinematics and separation occurs in some scene of each model
 _SOIL = (
     ("contact-state", "finite", "displacement"),
     ("leading-corner", "finite", "pressure"),
@@ -93,7 +93,7 @@ def has_cap(scene):
 
 
 def overturning_angle(scene):
-    """Of the block; of block and cap where they are one body [rad]."""
+    """Return that of the block, or of block and cap where they are one body [rad]."""
     if not scene.endswith(", cap"):
         return math.atan(0.25)
     return math.atan(1.6 / ((50.0 * (0.4 + 4.8) + 10.0 * 0.2) / 60.0))
@@ -107,7 +107,7 @@ def pulse(vertical=False):
 
 
 def record(vertical=False):
-    """A sampled motion with a step that is no short binary fraction."""
+    """Return a sampled motion whose time step is not a short binary fraction."""
     rng = np.random.default_rng(3)
     across = np.convolve(rng.normal(size=180), np.ones(25), mode="same")
     across *= 5.5 / np.abs(across).max()

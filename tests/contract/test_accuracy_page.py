@@ -1,4 +1,4 @@
-"""What the page "Accuracy" says of the levels is what they do."""
+"""The page "Accuracy" describes the levels correctly."""
 
 import numpy as np
 import pytest
@@ -56,11 +56,11 @@ def test_documented_run_is_reproduced(level):
     assert run.attrs["solver_rejected_steps"] == pytest.approx(rejected, abs=2)
     assert float(run.energy_residual) == pytest.approx(residual, rel=DIGITS)
     off = abs(float(run.peak_rotation / exact.peak_rotation) - 1.0)
-    # near rounding the error is of some size only
+    # near rounding only the order of the error is known
     assert off == pytest.approx(error, rel=DIGITS, abs=1e-13)
 
 
-def least_overturning(system, accuracy, low):
+def overturning_amplitude(system, accuracy, low):
     """Return the amplitude between `low` and a tenth more at which overturning begins [m/s^2]."""
 
     def overturns(amplitude):
@@ -89,10 +89,10 @@ def test_thresholds_of_overturning():
         (ON_PADS, pads, 17.6, {"fast": fast_pads, "standard": pads_off}),
         (ON_RIGID_GROUND, rigid, 19.2, {"fast": -fast_rigid, "standard": -rigid_off}),
     ):
-        exact = least_overturning(system, "reference", low)
+        exact = overturning_amplitude(system, "reference", low)
         assert exact == pytest.approx(value, abs=6e-4)
         for level, off in offs.items():
-            found = least_overturning(system, level, low) / exact - 1.0
+            found = overturning_amplitude(system, level, low) / exact - 1.0
             assert found == pytest.approx(off, rel=DIGITS)
 
 

@@ -1,4 +1,4 @@
-"""The page "Architecture" names all folders, and the files and names that it names are there."""
+"""The page "Architecture" names all folders, and the files and names in it exist."""
 
 import re
 from pathlib import Path

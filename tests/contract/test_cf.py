@@ -1,7 +1,7 @@
-"""Every dataset that is given away, in a file: the rules of CF-1.11 and a second reader.
+"""Files of every kind of dataset follow CF-1.11 and can be read by other libraries.
 
-The sections are those of the CF conventions; the file is looked at by netCDF4, which knows
-nothing of xarray, and in the classic format by SciPy, which knows nothing of netCDF's library.
+The sections are those of the CF conventions. Files are read by netCDF4, independently of xarray,
+and in the classic format by SciPy, independently of netCDF's library.
 """
 
 import re
@@ -37,7 +37,7 @@ FRAME = rf.FrameEquivalent.from_members(
 )
 PAIR = {"one": NOISE, "other": NOISE.scaled(-0.5)}
 TARGET = rf.TargetSpectrum.eurocode_8("0.1 g_0").with_deviation(0.5)
-GIVEN = {
+DATASETS = {
     "stack": lambda: STACK.simulate(record(), outputs="energy"),
     "still": lambda: ON_PADS.simulate(duration="0.1 s"),
     "overturned": lambda: ON_PADS.simulate(FALL),
@@ -83,7 +83,7 @@ CHECKS = []
 
 
 def check(function):
-    """Add a rule of CF, by section."""
+    """Add a check of a rule of CF, by section."""
     CHECKS.append(function)
     return function
 
@@ -129,32 +129,32 @@ def conventions_and_description_2_6(file):
 @check
 def units_3_1(file):
     for name, variable in file.variables.items():
-        given = attributes(variable)
+        attrs = attributes(variable)
         labels = variable.dtype is str
-        assert ("units" in given) == (not labels and "flag_values" not in given), name
-        if "units" in given:
-            assert not cf_units.Unit(given["units"]).is_unknown(), name
+        assert ("units" in attrs) == (not labels and "flag_values" not in attrs), name
+        if "units" in attrs:
+            assert not cf_units.Unit(attrs["units"]).is_unknown(), name
 
 
 @check
-def names_of_meaning_3_2_and_3_3(file):
+def long_names_3_2_and_standard_names_3_3(file):
     for name, variable in file.variables.items():
         assert attributes(variable)["long_name"].strip(), name
-        # the table of standard names has none for rocking
+        # the table of standard names has none for rocking motion
         assert "standard_name" not in variable.ncattrs(), name
 
 
 @check
 def flags_3_5(file):
     for name, variable in file.variables.items():
-        given = attributes(variable)
-        assert ("flag_values" in given) == ("flag_meanings" in given), name
-        if "flag_values" not in given:
-            assert "dtype" not in given, name  # no truth value without its meanings
+        attrs = attributes(variable)
+        assert ("flag_values" in attrs) == ("flag_meanings" in attrs), name
+        if "flag_values" not in attrs:
+            assert "dtype" not in attrs, name  # a boolean needs its meanings
             continue
-        values = np.atleast_1d(given["flag_values"])
+        values = np.atleast_1d(attrs["flag_values"])
         assert values.dtype == variable.dtype, name
-        meanings = given["flag_meanings"].split(" ")
+        meanings = attrs["flag_meanings"].split(" ")
         assert len(set(meanings)) == len(set(values.tolist())) == len(values) == len(meanings)
         assert all(re.fullmatch(r"[A-Za-z0-9_.+@-]+", word) for word in meanings), name
         assert np.isin(variable[...], values).all(), name
@@ -162,12 +162,12 @@ def flags_3_5(file):
 
 @check
 def time_elapsed_is_no_time_coordinate_4_4(file):
-    """A time coordinate has a reference date in its units; elapsed time must not pose as one."""
+    """A time coordinate has a reference date in its units; elapsed time is not one."""
     for name, variable in file.variables.items():
-        given = attributes(variable)
-        assert " since " not in given.get("units", ""), name
-        assert "axis" not in given, name
-        assert "calendar" not in given, name
+        attrs = attributes(variable)
+        assert " since " not in attrs.get("units", ""), name
+        assert "axis" not in attrs, name
+        assert "calendar" not in attrs, name
     if "time" in file.variables:
         assert file["time"].units == "s"
 
@@ -183,15 +183,15 @@ def coordinates_1_3_and_5(kind, file):
             steps = np.diff(variable[...])
             assert (steps > 0.0).all() or (steps < 0.0).all(), name
     for name, variable in file.variables.items():
-        beside = attributes(variable).get("coordinates", "").split()
-        assert set(beside) <= set(file.variables), name
-        for other in beside:
+        auxiliary = attributes(variable).get("coordinates", "").split()
+        assert set(auxiliary) <= set(file.variables), name
+        for other in auxiliary:
             assert set(file[other].dimensions) <= set(variable.dimensions), name
 
 
 @check
-def a_second_reader_finds_the_same(dataset, tmp_path):
-    """The classic format: no strings, no long integers."""
+def scipy_reads_the_same(dataset, tmp_path):
+    """SciPy reads the classic format, without strings and long integers."""
     path = tmp_path / "classic.nc"
     dataset.to_netcdf(path, format="NETCDF3_64BIT")
     with scipy.io.netcdf_file(path, mmap=False) as classic:
@@ -210,8 +210,8 @@ def a_second_reader_finds_the_same(dataset, tmp_path):
 
 
 @check
-def xarray_finds_the_same(dataset, tmp_path):
-    """And writes again what it has read."""
+def xarray_reads_the_same(dataset, tmp_path):
+    """xarray also writes what it has read."""
     with xr.open_dataset(tmp_path / "given.nc") as again:
         xr.testing.assert_identical(again.load(), dataset)
         again.to_netcdf(tmp_path / "again.nc")
@@ -219,9 +219,9 @@ def xarray_finds_the_same(dataset, tmp_path):
         xr.testing.assert_identical(twice.load(), dataset)
 
 
-@pytest.mark.parametrize("kind", GIVEN)
+@pytest.mark.parametrize("kind", DATASETS)
 def test_files_follow_cf_conventions(subtests, kind, tmp_path):
-    dataset = GIVEN[kind]()
+    dataset = DATASETS[kind]()
     dataset.to_netcdf(tmp_path / "given.nc")
     with netCDF4.Dataset(tmp_path / "given.nc") as file:
         known = {"kind": kind, "file": file, "dataset": dataset, "tmp_path": tmp_path}

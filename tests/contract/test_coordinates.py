@@ -1,4 +1,4 @@
-"""Coordinates of the datasets of analyses have no fill value: none of their values is missing."""
+"""Coordinates in datasets of analyses have no fill value, since none of their values is missing."""
 
 import netCDF4
 import pytest

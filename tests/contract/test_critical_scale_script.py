@@ -1,4 +1,4 @@
-"""The example of the critical scale: what it prints, keeps and refuses."""
+"""The example of the critical scale: its output, its file and its errors."""
 
 import runpy
 import sys
@@ -17,16 +17,16 @@ def test_script_prints_verdict_and_saves_result(monkeypatch, tmp_path, capsys):
 
     def run(*arguments):
         monkeypatch.setattr(sys, "argv", [str(SCRIPT), *map(str, arguments)])
-        with pytest.raises(SystemExit) as left:
+        with pytest.raises(SystemExit) as exited:
             runpy.run_path(str(SCRIPT), run_name="__main__")
-        return left.value.code
+        return exited.value.code
 
     folder = tmp_path / "not" / "there"
     assert run(tmp_path / "record.nc", "--folder", folder) == 0
-    with xr.open_dataset(folder / "critical_scale.nc") as kept:
-        assert kept.attrs["verdict"] in capsys.readouterr().out
-        assert kept.critical_scale.notnull()
+    with xr.open_dataset(folder / "critical_scale.nc") as stored:
+        assert stored.attrs["verdict"] in capsys.readouterr().out
+        assert stored.critical_scale.notnull()
     assert run(tmp_path / "record.nc", "--largest", -1, "--folder", folder) == 1
-    told = capsys.readouterr().err
-    assert told.startswith("critical_scale: ")
-    assert told.count("\n") == 1
+    stderr = capsys.readouterr().err
+    assert stderr.startswith("critical_scale: ")
+    assert stderr.count("\n") == 1

@@ -1,4 +1,4 @@
-"""The dataset of every scene: layout, types, attributes, as promised."""
+"""The dataset of every scene has the documented layout, types and attributes."""
 
 import math
 import re
@@ -77,7 +77,7 @@ SOIL_EVENTS = {"soil_contact_state_before", "soil_contact_state_after"}
 
 
 def histories_of(scene):
-    """Names of the histories that a scene has without being asked."""
+    """Return the names of the histories that a scene has by default."""
     model = MODELS[scene]
     names = set(HISTORIES)
     if model in ON_PADS or model == "rigid ground":
@@ -97,13 +97,13 @@ CHECKS = []
 
 
 def check(function):
-    """Add what holds for the dataset of every scene under every motion."""
+    """Add a check of the dataset of every scene under every motion."""
     CHECKS.append(function)
     return function
 
 
 @check
-def its_layout(scene, motion_name, response):
+def variables_and_dimensions_match_schema(scene, motion_name, response):
     assert isinstance(response, xr.Dataset)
     assert set(response.dims) == {"time", "event"}
     assert set(response.coords) == {"time"}
@@ -120,7 +120,7 @@ def its_layout(scene, motion_name, response):
 
 
 @check
-def its_time_axis(response):
+def time_axis_starts_at_zero(response):
     time = response.time.values
     assert time.dtype == np.float64
     assert time[0] == 0.0
@@ -130,7 +130,7 @@ def its_time_axis(response):
 
 
 @check
-def floats_are_plain_and_have_units_and_long_names(response):
+def floats_have_units_and_long_names(response):
     for name, variable in response.variables.items():
         assert isinstance(variable.data, np.ndarray), name
         assert variable.data.flags.writeable or name == "time", name
@@ -151,7 +151,7 @@ def histories_are_finite(response):
 
 
 @check
-def flags_read_as_words(response):
+def flags_have_meanings(response):
     state = response.contact_state
     assert state.dtype == np.int8
     assert state.attrs["flag_values"].dtype == np.int8
@@ -181,9 +181,9 @@ def flags_read_as_words(response):
 
 
 @check
-def its_contact_states_are_those_of_its_reactions(scene, response):
+def contact_states_match_reactions(scene, response):
     if MODELS[scene] in ON_SOIL:
-        check_the_soil(scene, response)
+        check_soil(scene, response)
     if MODELS[scene] == "Winkler":
         return
     left = response.left_reaction.values
@@ -195,7 +195,7 @@ def its_contact_states_are_those_of_its_reactions(scene, response):
     assert (right[(state == 1) | (state == 3)] == 0.0).all()
 
 
-def check_the_soil(scene, response):
+def check_soil(scene, response):
     state = response["soil_contact_state" if has_cap(scene) else "contact_state"].values
     length, width = response.contact_length.values, 3.2 if has_cap(scene) else 2.4
     assert (length >= 0.0).all()
@@ -210,7 +210,7 @@ def check_the_soil(scene, response):
 
 
 @check
-def its_cap_moves_with_its_block(scene, response):
+def cap_moves_with_block(scene, response):
     if not has_cap(scene):
         assert not (CAP | ON_CAP) & set(response.variables)
         return
@@ -225,7 +225,7 @@ def its_cap_moves_with_its_block(scene, response):
 
 
 @check
-def its_scalars_agree_with_its_histories(scene, response):
+def scalars_agree_with_histories(scene, response):
     assert response.overturned.dtype == bool
     theta = response.overturning_angle.item()
     assert theta == pytest.approx(overturning_angle(scene), rel=1e-14)
@@ -245,7 +245,7 @@ def its_scalars_agree_with_its_histories(scene, response):
 
 
 @check
-def its_events_are_in_order_and_join_up(scene, response):
+def events_are_ordered_and_connected(scene, response):
     time = response.event_time.values
     assert time.size > 0
     assert (np.diff(time) >= 0.0).all()
@@ -257,7 +257,7 @@ def its_events_are_in_order_and_join_up(scene, response):
         state = response[f"{of}contact_state"].values
         np.testing.assert_array_equal(before[1:], after[:-1])
         assert before[0] == state[0]
-        # between events the histories stay in the state that the last event left
+        # between events the histories stay in the state after the last event
         held = np.concatenate([before[:1], after])
         row = np.searchsorted(time, response.time.values, side="left")
         np.testing.assert_array_equal(state, held[row])
@@ -266,7 +266,7 @@ def its_events_are_in_order_and_join_up(scene, response):
 
 
 @check
-def its_rates_are_the_slopes_of_its_histories(scene, motion_name):
+def rates_are_slopes_of_histories(scene, motion_name):
     """Between events, by the trapezoidal rule: its error is of third order in the step."""
     response = SCENES[scene]().simulate(
         MOTIONS[motion_name](), free_vibration="0.5 s", output_step="1 ms"
@@ -294,7 +294,7 @@ def its_rates_are_the_slopes_of_its_histories(scene, motion_name):
 
 
 @check
-def its_attributes_are_strings_and_numbers(response):
+def attributes_are_strings_and_numbers(response):
     for name, value in response.attrs.items():
         assert isinstance(name, str)
         assert type(value) in (str, int, float), name
@@ -304,7 +304,7 @@ def its_attributes_are_strings_and_numbers(response):
 
 
 @check
-def its_attributes_tell_the_whole_story(scene, motion_name, response):
+def attributes_describe_the_run(scene, motion_name, response):
     attrs = response.attrs
     assert attrs["Conventions"] == "CF-1.11"
     assert attrs["title"]
@@ -335,7 +335,7 @@ def its_attributes_tell_the_whole_story(scene, motion_name, response):
 
 
 @check
-def its_ground_acceleration_is_the_motion(motion_name, response):
+def ground_acceleration_equals_motion(motion_name, response):
     si = MOTIONS[motion_name]().si
     across = response.ground_acceleration.values
     np.testing.assert_array_equal(across[: si.horizontal.samples.size], si.horizontal.samples)
@@ -369,7 +369,7 @@ class TestOverturning:
         assert response.event_time.values[-1] == time
         assert bool(response.event_kind.cf.isin(["overturning"])[-1])
         theta = response.overturning_angle.item()
-        # the total of a cascade is known at samples, and by cubics in between
+        # the total of a cascade is known at samples and interpolated by cubics
         close = 1e-8 if MODELS[scene] == "cascade" else 1e-12
         assert abs(response.rotation.values[-1]) == pytest.approx(theta, rel=close)
         assert response.peak_relative_rotation.item() == pytest.approx(1.0, rel=1e-12)
@@ -405,17 +405,17 @@ class TestOverturning:
         assert "left" in response.attrs["verdict"]
 
 
-class TestWhatIsAskedFor:
+class TestRequests:
     def test_energies_only_on_request(self, scene):
         assert not set(ENERGIES) & set(SCENES[scene]().simulate(pulse()).variables)
 
     def test_one_energy_only(self, scene):
         first, *others = ENERGIES
-        asked = [(name, name) for name in ENERGIES]
-        if scene == next(iter(SCENES)):  # what is asked for is read before there is a scene
-            asked += [(first, form) for form in ([first], (first,), {first})]
-            asked += [(others[0], [others[0]])]
-        for name, outputs in asked:
+        requests = [(name, name) for name in ENERGIES]
+        if scene == next(iter(SCENES)):  # outputs are read before the scene is assembled
+            requests += [(first, form) for form in ([first], (first,), {first})]
+            requests += [(others[0], [others[0]])]
+        for name, outputs in requests:
             response = SCENES[scene]().simulate(pulse(), duration="0.4 s", outputs=outputs)
             assert set(ENERGIES) & set(response.variables) == {name}
 
@@ -448,7 +448,7 @@ class TestWhatIsAskedFor:
         response = SCENES[scene]().simulate(duration="1 s", outputs="energy")
         assert response.sizes["event"] == 0
         assert (response.rotation.values == 0.0).all()
-        # weight and soil balance to rounding, whatever the mass
+        # weight and soil reaction balance up to rounding, for any mass
         rounding = 1e-16 if MODELS[scene] in ON_SOIL else 0.0
         assert (np.abs(response.vertical_displacement.values) <= rounding).all()
         assert math.isnan(response.first_uplift_time.item())
@@ -516,24 +516,24 @@ def test_last_sample_is_present_despite_rounding_of_duration():
     assert system.simulate(duration="0.3 s", output_step="0.1 s").time.size == 4
 
 
-STANDS = "Did not overturn: peak rotation 0.01 rad, 5 % of the overturning angle; "
+STANDING = "Did not overturn: peak rotation 0.01 rad, 5 % of the overturning angle; "
 
 
 @pytest.mark.parametrize(
     ("found", "pads_on_cap", "words"),
     [
-        ({}, False, STANDS + "1 impact."),
+        ({}, False, STANDING + "1 impact."),
         (
             {"impact_count": 2, "flight_time": 0.125},
             False,
-            STANDS + "2 impacts, 0.125 s in flight.",
+            STANDING + "2 impacts, 0.125 s in flight.",
         ),
         (
             {"impact_count": 0, "first_uplift_time": math.nan},
             False,
-            STANDS + "0 impacts, no uplift.",
+            STANDING + "0 impacts, no uplift.",
         ),
-        ({"first_uplift_time": math.nan}, True, STANDS + "1 impact, no uplift from the pads."),
+        ({"first_uplift_time": math.nan}, True, STANDING + "1 impact, no uplift from the pads."),
         (
             {
                 "overturning_time": 1.25,
@@ -601,8 +601,8 @@ def test_verdict_sentence(found, pads_on_cap, words):
     assert pads_on_cap or "1 impact, no uplift of body 1." in upper
     if not summary.overturned and summary.status.finished and not found:
         setting.overturning_angles, setting.leans = OverturningAngles(0.2, 0.025), True
-        told = verdict(summary, setting, model)
-        assert "peak rotation 0.005 rad, 20 % of the overturning angle to the right;" in told
+        sentence = verdict(summary, setting, model)
+        assert "peak rotation 0.005 rad, 20 % of the overturning angle to the right;" in sentence
 
 
 def test_unfinished_run_warns():

@@ -1,4 +1,4 @@
-"""The examples in docstrings run as they stand, and show what they give; none is missing."""
+"""Examples in docstrings run and print what they show; every public function has one."""
 
 import doctest
 import importlib
@@ -36,7 +36,7 @@ LEFT_OUT = {
 
 @pytest.fixture(autouse=True)
 def registry():
-    """Return examples the registry that users have: other libraries put theirs in its place."""
+    """Restore the registry of users for examples, since other libraries replace it."""
     before = pint.get_application_registry().get()
     pint.set_application_registry(pint.UnitRegistry())
     yield
@@ -46,24 +46,24 @@ def registry():
 def examples_in(name):
     """Return the docstrings of a module that have examples."""
     module = importlib.import_module(name)
-    return [one for one in doctest.DocTestFinder().find(module) if one.examples]
+    return [docstring for docstring in doctest.DocTestFinder().find(module) if docstring.examples]
 
 
 @pytest.mark.wide
 def test_examples_in_docstrings():
     runner = doctest.DocTestRunner(optionflags=doctest.NORMALIZE_WHITESPACE)
-    told: list[str] = []
+    output: list[str] = []
     with mock.patch.dict(DIAGNOSTICS), mock.patch.dict(SCHEMA):
         for name in MODULES:
             for example in examples_in(name):
-                runner.run(example, out=told.append)
+                runner.run(example, out=output.append)
                 plt.close("all")
     assert runner.tries > 200
-    assert not runner.failures, "".join(told)
+    assert not runner.failures, "".join(output)
 
 
-def found_by(name):
-    """Return what the reference lists by its name below `rockframe`."""
+def documented_object(name):
+    """Return an object that the reference lists by its name below `rockframe`."""
     value = rockframe
     for part in name.split("."):
         try:
@@ -73,14 +73,14 @@ def found_by(name):
     return value
 
 
-def run_in(value):
-    """Return the code of a docstring's examples that are run."""
+def executed_code(value):
+    """Return the executed code of a docstring's examples."""
     examples = doctest.DocTestParser().get_examples(inspect.getdoc(value) or "")
-    return "".join(one.source for one in examples if not one.options.get(doctest.SKIP))
+    return "".join(example.source for example in examples if not example.options.get(doctest.SKIP))
 
 
 def methods_of(kind):
-    """Return the methods of a class that this package defines, by their names."""
+    """Return the methods of a class defined in this package, by name."""
     for name in dir(kind):
         value = inspect.getattr_static(kind, name)
         value = getattr(value, "__func__", value)
@@ -90,20 +90,21 @@ def methods_of(kind):
 
 
 def is_shown(kind, method):
-    """Tell whether a method is in an example: its own, of what it overrides, or of the class.
+    """Return whether a method is in an example: its own, of an overridden method, or of the class.
 
     Methods that users write are shown by a class that has them.
     """
     return any(
-        run_in(vars(one).get(method)) or re.search(rf"\b{method}\(", run_in(one))
-        for one in kind.__mro__
-        if one is not object
+        executed_code(vars(class_).get(method))
+        or re.search(rf"\b{method}\(", executed_code(class_))
+        for class_ in kind.__mro__
+        if class_ is not object
     )
 
 
-def test_no_public_callable_lacks_an_example():
-    values = {name: found_by(name) for name in reference_names()}
-    lacking = [name for name, value in values.items() if not run_in(value)]
+def test_every_public_callable_has_an_example():
+    values = {name: documented_object(name) for name in reference_names()}
+    lacking = [name for name, value in values.items() if not executed_code(value)]
     named, shown = {}, set()
     for name, value in values.items():
         for method, function in methods_of(value) if inspect.isclass(value) else ():

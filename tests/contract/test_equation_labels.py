@@ -1,4 +1,4 @@
-"""Code and manual cite the same equations: no label is missing, doubled or forgotten."""
+"""Code and manual cite the same equations: no label is missing, defined twice or unused."""
 
 from __future__ import annotations
 

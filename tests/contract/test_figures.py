@@ -1,4 +1,4 @@
-"""Every figure takes `units`, `ax` and `title`, and obeys them; the player has no `ax`."""
+"""Every figure takes and uses `units`, `ax` and `title`; the player has no `ax`."""
 
 import inspect
 
@@ -43,7 +43,7 @@ def _decay():
 def _sweep():
     runs = rf.sweep(RIGID, {"pulse": PULSE}, scale=[0.5, 1.0, 1.2], progress=False)
     return runs.drop_vars("peak_relative_rotation").rename(
-        peak_rotation="peak_relative_rotation"  # what is drawn unless told otherwise
+        peak_rotation="peak_relative_rotation"  # the default
     )
 
 
@@ -61,7 +61,7 @@ METRES, DEGREES = {"length": ("m", "mm", 1e-3)}, {"angle": ("rad", "mrad", 1e-3)
 GRAVITIES = {"acceleration": ("m/s^2", "g", 9.80665)}
 PERIODS = {"periods": ([2.0, 3.0], "s"), "slenderness": [5.0], "progress": False}
 DRAWN = {
-    # function: (what it draws, a kind of units that it shows, with two of them and their ratio)
+    # function: (its argument, a kind of units that it shows, two of them and their ratio)
     "animation": (_run, DEGREES),
     "annual_rate": (_rates, GRAVITIES),
     "cloud": (_cloud, GRAVITIES),
@@ -130,7 +130,7 @@ DRAWN = {
 
 
 @pytest.fixture(scope="module")
-def given():
+def plotted():
     made = {}
     return lambda name: made.setdefault(DRAWN[name][0], DRAWN[name][0]())
 
@@ -141,25 +141,25 @@ def _closed():
     plt.close("all")
 
 
-def panels_of(drawn):
-    drawn = getattr(drawn, "panels", drawn)
-    return list(drawn) if isinstance(drawn, tuple) else [drawn]
+def panels_of(figure):
+    figure = getattr(figure, "panels", figure)
+    return list(figure) if isinstance(figure, tuple) else [figure]
 
 
-def spans(drawn, unit):
-    """Return what is read along all axes that have the unit."""
+def spans(figure, unit):
+    """Return the spans of all axes that have the unit."""
     found = []
-    for axes in panels_of(drawn):
+    for axes in panels_of(figure):
         for axis, label, ends in (
             (axes.xaxis, axes.get_xlabel(), axes.dataLim.intervalx),
             (axes.yaxis, axes.get_ylabel(), axes.dataLim.intervaly),
         ):
             if label.endswith(f"[{unit}]"):
-                read = axis.get_major_formatter()
-                places = np.array(ends)
-                # a scene is drawn in metres, and its ticks tell another unit
-                told = isinstance(read, FuncFormatter) and axes.get_aspect() == 1.0
-                found.append([float(read(place)) for place in places] if told else places)
+                formatter = axis.get_major_formatter()
+                values = np.array(ends)
+                # a scene is drawn in metres, and its tick labels are converted
+                converted = isinstance(formatter, FuncFormatter) and axes.get_aspect() == 1.0
+                found.append([float(formatter(place)) for place in values] if converted else values)
     return np.array(found)
 
 
@@ -167,10 +167,10 @@ def test_all_figures_take_units_ax_and_title():
     functions = {name for name in rf.plot.__all__ if name.islower()}
     assert functions == set(DRAWN)
     for name in functions:
-        taken = inspect.signature(getattr(rf.plot, name)).parameters
+        parameters = inspect.signature(getattr(rf.plot, name)).parameters
         shared = {"units", "title"} if name == "player" else {"units", "ax", "title"}
-        assert shared <= set(taken)
-        assert all(taken[one].default is None for one in shared)
+        assert shared <= set(parameters)
+        assert all(parameters[argument].default is None for argument in shared)
         assert "mapping of str to str, optional\n    Units by quantity" in inspect.getdoc(
             getattr(rf.plot, name)
         )
@@ -178,13 +178,13 @@ def test_all_figures_take_units_ax_and_title():
 
 @pytest.mark.wide
 @pytest.mark.parametrize("name", sorted(set(DRAWN) - {"player"}))
-def test_figures_use_requested_units(name, given):
+def test_figures_use_requested_units(name, plotted):
     draw, kinds = getattr(rf.plot, name), DRAWN[name][1]
     for kind, (plain, other, size) in kinds.items():
         words = {"m/s^2": "m s$^{-2}$", "m/s": "m s$^{-1}$", "cm/s": "cm s$^{-1}$"}
         words |= {"N*m": "N m", "kN*m": "kN m"}
         first, second = (
-            spans(draw(given(name), units={kind: unit}), words.get(unit, unit))
+            spans(draw(plotted(name), units={kind: unit}), words.get(unit, unit))
             for unit in (plain, other)
         )
         assert first.size > 0
@@ -194,49 +194,49 @@ def test_figures_use_requested_units(name, given):
         ComponentError,
         match=rf"plot\.{name}: units belong to kinds of quantities.*'angel'.*'angle'",
     ):
-        draw(given(name), units={"angel": "deg"})
+        draw(plotted(name), units={"angel": "deg"})
     with pytest.raises(UnitsError, match=rf"plot\.{name}.*force"):
-        draw(given(name), units={"force": "mm"})
+        draw(plotted(name), units={"force": "mm"})
 
 
 @pytest.mark.wide
 @pytest.mark.parametrize("name", sorted(set(DRAWN) - {"player"}))
-def test_figures_are_drawn_on_given_axes(name, given):
-    draw, what = getattr(rf.plot, name), given(name)
-    assert name not in KINDS or figure_function_name(what) == name
-    usual = panels_of(draw(what))
+def test_figures_are_drawn_on_given_axes(name, plotted):
+    draw, argument = getattr(rf.plot, name), plotted(name)
+    assert name not in KINDS or figure_function_name(argument) == name
+    default = panels_of(draw(argument))
     plt.close("all")
     figure = plt.figure(figsize=(14.0, 6.0), layout="constrained")
-    if len(usual) == 1:
+    if len(default) == 1:
         axes = figure.subplots()
-        drawn = panels_of(draw(what, ax=axes, title="given"))
-        assert drawn == [axes]
+        panels = panels_of(draw(argument, ax=axes, title="given"))
+        assert panels == [axes]
         assert axes.get_title() == "given"
         with pytest.raises(ComponentError, match="ax must be one Axes, got"):
-            draw(what, ax=figure)
+            draw(argument, ax=figure)
     else:
         left, right = figure.subfigures(1, 2)
         for place in (left, right):
-            drawn = panels_of(draw(what, ax=place, title="given"))
-            assert len(drawn) == len(usual)
-            assert all(axes.figure is place for axes in drawn)
+            panels = panels_of(draw(argument, ax=place, title="given"))
+            assert len(panels) == len(default)
+            assert all(axes.figure is place for axes in panels)
             assert place.get_suptitle() == "given"
-        again = panels_of(draw(what, ax=drawn))
-        assert all(one is other for one, other in zip(again, drawn, strict=True))
+        again = panels_of(draw(argument, ax=panels))
+        assert all(one is other for one, other in zip(again, panels, strict=True))
     figure.canvas.draw()
     assert plt.get_fignums() == [figure.number]
 
 
-def test_the_player_obeys_units_and_title(given):
+def test_the_player_obeys_units_and_title(plotted):
     units = {"acceleration": "g", "angle": "mrad"}
-    page = rf.plot.player(given("player"), units=units, title="Fall")
+    page = rf.plot.player(plotted("player"), units=units, title="Fall")
     assert "ground acceleration [g]" in page.to_html()
     assert "rotation [mrad]" in page.to_html()
     assert "Fall" in page.to_html()
 
 
-def test_tables_obey_units(given):
-    run = given("response")
+def test_tables_obey_units(plotted):
+    run = plotted("response")
     table = rf.table(run, "histories", units={"force": "kN", "angle": "deg"})
     np.testing.assert_allclose(table["left_reaction [kN]"], 1e-3 * run.left_reaction, rtol=1e-12)
     np.testing.assert_allclose(table["rotation [°]"], np.degrees(run.rotation), rtol=1e-12)
@@ -260,12 +260,12 @@ SENTENCE = (
         for place, size in enumerate([8.0, 10.0, 14.0])
     ],
 )
-def test_titles_never_break_inside_a_unit(given, width, size):
+def test_titles_never_break_inside_a_unit(plotted, width, size):
     with plt.rc_context({"font.size": size}):
         figure = plt.figure(figsize=(width, 4.0), layout="constrained")
-        rf.plot.response(given("response"), ax=figure, title=SENTENCE)
+        rf.plot.response(plotted("response"), ax=figure, title=SENTENCE)
         text = figure.get_suptitle()
     assert "\n" in text
     assert text.replace("\n", " ") == SENTENCE
-    for kept in ("4.345 s", "0.4512 m s^-1", "12.31 m s^-2", "100 kN m"):
-        assert kept in text
+    for value in ("4.345 s", "0.4512 m s^-1", "12.31 m s^-2", "100 kN m"):
+        assert value in text

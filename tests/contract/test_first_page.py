@@ -1,4 +1,4 @@
-"""The first page of the manual leads to all others, and to the examples."""
+"""The first page of the manual links to all others, and to the examples."""
 
 import json
 import re

@@ -1,4 +1,4 @@
-"""What the pages say of floor motions is what the code and the example do."""
+"""The pages on floor motions agree with the code and the example."""
 
 import re
 import runpy
@@ -15,10 +15,10 @@ HEAD = "| samples per period | harmonic of that period | white noise | earthquak
 
 
 def deviation(motion, period):
-    """Return the deviation from straight lines that the history tells [%]."""
+    """Return the deviation from straight lines stated in the history [%]."""
     floor = motion.through_storeys([f"{period!r} s"], 0.05)
-    told = [re.search(r"departs from that by up to (\S+) % of", line) for line in floor.history]
-    (value,) = [float(one[1]) for one in told if one]
+    matches = [re.search(r"departs from that by up to (\S+) % of", line) for line in floor.history]
+    (value,) = [float(match[1]) for match in matches if match]
     return value
 
 
@@ -52,13 +52,13 @@ def test_the_default_length_of_free_vibration():
 def test_the_museum_case(monkeypatch, tmp_path, capsys):
     script = DOCS.parent / "examples" / "floor_motion.py"
     monkeypatch.setattr(sys, "argv", [str(script), "--folder", str(tmp_path)])
-    with pytest.raises(SystemExit) as left:
+    with pytest.raises(SystemExit) as exited:
         runpy.run_path(str(script), run_name="__main__")
-    assert left.value.code == 0
+    assert exited.value.code == 0
     lines = capsys.readouterr().out.splitlines()
     fates = ["Overturned" in line for line in lines if line.startswith("  on ")]
     assert fates == [False, False, False, True, True, True, True]
     assert "On the ground the case stays up; on floors 3, 4, 5 and 6 the same" in lines[8]
-    made = {path.name for path in tmp_path.iterdir()}
-    assert made == {"floor_motion.nc", "floor_motion.png", "case_on_floor_4.png"}
+    files = {path.name for path in tmp_path.iterdir()}
+    assert files == {"floor_motion.nc", "floor_motion.png", "case_on_floor_4.png"}
     assert len(rf.GroundMotion.read(tmp_path / "floor_motion.nc")) > 4000

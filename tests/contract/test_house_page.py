@@ -1,4 +1,4 @@
-"""The page "The code in ten minutes" tells which rooms there are, and which uses which."""
+"""The page "The code in ten minutes" lists all rooms, and which uses which."""
 
 import ast
 import importlib
@@ -10,20 +10,22 @@ from pages import read, table
 PACKAGE = Path(__file__).resolve().parents[2] / "rockframe"
 PAGE = "development/house.md"
 HEAD = "| room | what it is for | what others take from it | rooms that it uses |"
-ROOMS = {one.parent.name for one in PACKAGE.glob("*/__init__.py")}
+ROOMS = {path.parent.name for path in PACKAGE.glob("*/__init__.py")}
 
 
-def used_by(room):
-    """Rooms from which the files of a room import."""
+def rooms_used_by(room):
+    """Return the rooms from which the files of a room import."""
     found = set()
     for file in (PACKAGE / room).rglob("*.py"):
         for node in ast.walk(ast.parse(file.read_text(encoding="utf-8"))):
             if isinstance(node, ast.ImportFrom) and node.module == "rockframe":
-                found |= {one.name for one in node.names}
+                found |= {alias.name for alias in node.names}
             elif isinstance(node, ast.ImportFrom) and (node.module or "").startswith("rockframe."):
                 found.add(node.module.split(".")[1])
             elif isinstance(node, ast.Import):
-                found |= {n.name.split(".")[1] for n in node.names if "rockframe." in n.name}
+                found |= {
+                    alias.name.split(".")[1] for alias in node.names if "rockframe." in alias.name
+                }
     return found & ROOMS - {room}
 
 
@@ -40,7 +42,7 @@ def test_every_subpackage_is_listed_and_drawn():
 @pytest.mark.parametrize("room", sorted(ROOMS))
 def test_documented_dependencies_match_imports(room):
     written = {one.strip() for one in rows()[room][2].split(",") if one.strip()}
-    assert written == used_by(room), f"write these rooms in the row of {room} in docs/{PAGE}"
+    assert written == rooms_used_by(room), f"write these rooms in the row of {room} in docs/{PAGE}"
 
 
 @pytest.mark.parametrize("room", sorted(ROOMS))

@@ -1,4 +1,4 @@
-"""What is loaded when: no more than a script asks for, beside what all of them need."""
+"""Imports load no more modules than a script needs."""
 
 import inspect
 import subprocess
@@ -17,7 +17,7 @@ HEAVY = (*NEEDED_BY_FEW, "xarray", "pandas", "pint")
 
 
 def loaded(*codes):
-    """Run codes in one fresh interpreter; give the heavy modules it has loaded after each."""
+    """Run codes in one fresh interpreter; return the heavy modules loaded after each."""
     names = (*HEAVY, "matplotlib.pyplot")
     report = f"import sys; print(*[name for name in {names} if name in sys.modules])"
     done = subprocess.run(
@@ -32,7 +32,7 @@ def loaded(*codes):
 
 @pytest.fixture(scope="module")
 def needed():
-    """What pint and xarray load, without which there are no units and no results."""
+    """Return the modules that pint and xarray load, which are always needed."""
     return loaded("import pint, xarray")[0]
 
 
@@ -62,10 +62,10 @@ assert "two-spring" in text
 
 
 def test_only_needed_libraries_are_imported(needed, tmp_path):
-    """One after the other: what is not loaded after the last was loaded by none before it."""
+    """In sequence: what is not loaded after the last code was not loaded by any before it."""
     file = tmp_path / "record.txt"
     file.write_text("\n".join(f"{0.01 * i:.2f} {0.1 * (i % 3)}" for i in range(50)))
-    imported, looked, *others = loaded(
+    imported, accessed, *others = loaded(
         "import rockframe",
         LOOKING_AROUND,
         NAMING_ALL,
@@ -75,7 +75,7 @@ def test_only_needed_libraries_are_imported(needed, tmp_path):
     )
     assert not NEEDED_BY_FEW & needed
     assert imported == needed
-    assert looked == needed
+    assert accessed == needed
     for after in others:
         assert not NEEDED_BY_FEW & after
 
@@ -93,9 +93,9 @@ def test_help_and_completion_load_no_library(words):
         capture_output=True, text=True, timeout=60,
     )  # fmt: skip
     assert done.returncode == 0
-    loaded_by_it = {line.rpartition("|")[2].strip() for line in done.stderr.splitlines()}
-    assert "argparse" in loaded_by_it
-    assert not {*HEAVY, "numpy", "scipy"} & loaded_by_it
+    newly_loaded = {line.rpartition("|")[2].strip() for line in done.stderr.splitlines()}
+    assert "argparse" in newly_loaded
+    assert not {*HEAVY, "numpy", "scipy"} & newly_loaded
 
 
 @pytest.mark.parametrize(
@@ -148,16 +148,16 @@ def test_all_public_names_exist():
 
 
 def test_dir_lists_only_public_names():
-    drawn = {"motion", "response", "selection", "spectra", "tradeoff", "fragility"}
-    assert drawn <= set(dir(rf.plot))
+    figures = {"motion", "response", "selection", "spectra", "tradeoff", "fragility"}
+    assert figures <= set(dir(rf.plot))
     assert not [name for name in dir(rf.plot) if name.startswith("_")]
     assert all(callable(getattr(rf.plot, name)) for name in dir(rf.plot))
     assert all(name.endswith(("Error", "Warning")) for name in dir(rf.errors))
     assert not set(rf.__all__) & set(dir(rf.errors))
     assert "Block" in dir(rf.components)
-    shown = set(dir(rf.System(rf.Block(width="1 m", height="3 m", mass="1 t"))))
-    assert {"simulate", "describe", "parts"} <= shown
-    assert not {"assembly", "scene", "setting"} & shown
+    public = set(dir(rf.System(rf.Block(width="1 m", height="3 m", mass="1 t"))))
+    assert {"simulate", "describe", "parts"} <= public
+    assert not {"assembly", "scene", "setting"} & public
 
 
 def test_moved_names_warn_as_deprecated():
@@ -168,14 +168,14 @@ def test_moved_names_warn_as_deprecated():
     assert inspect.isclass(Case)
     suite = {"one": rf.GroundMotion.stochastic(6, "20 km", seed=1)}
     target = rf.TargetSpectrum.eurocode_8("0.1 g_0")
-    for name, given, new in (
+    for name, arguments, new in (
         ("scale_to_target", (suite, target), rf.MotionSuite(suite).scaling_to(target)),
         ("select_for_target", (suite, target, 1), rf.MotionSuite(suite).selection_for(target, 1)),
         ("fragility_of_counts", (COUNTS["intensity"], [0, 2, 5], 5), rf.fragility(COUNTS)),
     ):
         with pytest.warns(DeprecationWarning, match=rf"rockframe\.{name} is now rockframe\."):
             old = getattr(rf, name)
-        assert old(*given).drop_attrs().identical(new.drop_attrs())
+        assert old(*arguments).drop_attrs().identical(new.drop_attrs())
     for name in deprecated.MOVED:
         with pytest.warns(DeprecationWarning, match=rf"rockframe\.{name} is now rockframe\."):
             assert callable(getattr(rf, name))
@@ -212,7 +212,7 @@ assert len(rf.response_spectrum(pulse, ([0.5], "s")).period) == 1
 
 
 def test_runs_without_threads_and_compiled_libraries():
-    """As in a browser, by a stand-in: these modules are missing, and no thread can be started."""
+    """As in a browser, where these modules are missing and no thread can be started."""
     done = subprocess.run(
         [sys.executable, "-c", WITHOUT], capture_output=True, text=True, timeout=240
     )

@@ -1,4 +1,4 @@
-"""One word for one thing: names of classes and functions stand once in the package."""
+"""Names of classes and functions are unique in the package."""
 
 import ast
 from collections import defaultdict
@@ -9,12 +9,12 @@ from rockframe import plot
 
 PACKAGE = Path(rf.__file__).parent
 SHARED_FUNCTIONS = {
-    # the same for each of several
+    # the same function for several kinds
     "solve_motion",  # equations of several bodies
     "matched",  # a motion, and a suite
-    # public names that users have known from the beginning
+    # established public names
     "register", "table",
-    # a figure, and what it shows
+    # a figure, and the function whose result it shows
     "moment_rotation", "velocity_pulse",
 }  # fmt: skip
 
@@ -23,7 +23,7 @@ def test_class_and_function_names_are_unique():
     places = {ast.ClassDef: defaultdict(list), ast.FunctionDef: defaultdict(list)}
     for path in sorted(PACKAGE.rglob("*.py")):
         for node in ast.parse(path.read_text(encoding="utf-8")).body:
-            # what is done with balls has the name of what is done with numbers
+            # functions of balls have the names of functions of numbers
             of_balls = type(node) is ast.FunctionDef and PACKAGE / "proof" in path.parents
             if type(node) in places and not node.name.startswith("_") and not of_balls:
                 places[type(node)][node.name].append(str(path.relative_to(PACKAGE)))
@@ -34,4 +34,4 @@ def test_class_and_function_names_are_unique():
         several = {name: files for name, files in places[kind].items() if len(files) > 1}
         doubled = {name: files for name, files in several.items() if name not in shared}
         assert not doubled, f"give one of each another name: {doubled}"
-        assert shared - figures <= set(several), "names that stand once, or not at all"
+        assert shared - figures <= set(several), "names that occur at most once"

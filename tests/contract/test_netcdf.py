@@ -1,4 +1,4 @@
-"""Through a file with plain xarray, and back to a system that gives the same bits."""
+"""Datasets survive a file of plain xarray, and their system reproduces the run bit for bit."""
 
 import json
 from inspect import signature
@@ -15,7 +15,7 @@ from rockframe.errors import RecordWarning, SchemaError
 
 pytestmark = pytest.mark.contract
 
-WHEN = ("history",)
+TIMESTAMPS = ("history",)
 
 
 def through_file(dataset, folder, **options):
@@ -25,7 +25,7 @@ def through_file(dataset, folder, **options):
         return again.load()
 
 
-def it_comes_back_identical(response, again):
+def round_trip_is_identical(response, again):
     xr.testing.assert_identical(again, response)
     for name, variable in response.variables.items():
         assert again[name].dtype == variable.dtype, name
@@ -35,12 +35,12 @@ def it_comes_back_identical(response, again):
     assert ((again.contact_state.cf == "full") == (response.contact_state.cf == "full")).all()
 
 
-def writing_leaves_the_dataset_alone(response, before, path):
+def writing_does_not_change_dataset(response, before, path):
     xr.testing.assert_identical(before, response)
     response.to_netcdf(path.with_name("two.nc"))
 
 
-def the_file_itself_is_clean(path):
+def file_has_expected_attributes(path):
     with netCDF4.Dataset(path) as file:
         for name, variable in file.variables.items():
             attributes = variable.ncattrs()
@@ -58,18 +58,18 @@ def the_file_itself_is_clean(path):
         assert "coordinates" not in file.ncattrs()
 
 
-def it_rebuilds_the_system_and_the_bits(scene, motion_name, again):
+def system_reproduces_the_run(scene, motion_name, again):
     system = rf.System.from_dataset(again)
     assert system.assembly.to_dict() == SCENES[scene]().to_dict()
     motion = system.motion
     if motion_name == "pulse and vertical":
-        # two analytic pulses in one: only the digest is on record
+        # two analytic pulses in one motion: only the digest is stored
         assert motion is None or motion.sha256 == MOTIONS[motion_name]().sha256
         motion = MOTIONS[motion_name]()
     assert motion is not None
     assert motion.sha256 == MOTIONS[motion_name]().sha256
     rerun = system.simulate(motion, free_vibration="0.5 s", outputs="energy")
-    for attribute in WHEN:
+    for attribute in TIMESTAMPS:
         del rerun.attrs[attribute], again.attrs[attribute]
     for name in again.variables:
         np.testing.assert_array_equal(rerun[name].values, again[name].values, err_msg=name)
@@ -78,17 +78,15 @@ def it_rebuilds_the_system_and_the_bits(scene, motion_name, again):
 
 
 CHECKS = (
-    it_comes_back_identical,
-    writing_leaves_the_dataset_alone,
-    the_file_itself_is_clean,
-    it_rebuilds_the_system_and_the_bits,
+    round_trip_is_identical,
+    writing_does_not_change_dataset,
+    file_has_expected_attributes,
+    system_reproduces_the_run,
 )
 
 
 @pytest.mark.wide
-def test_every_response_survives_netcdf_round_trip(
-    subtests, scene, motion_name, response, tmp_path
-):
+def test_response_survives_netcdf_round_trip(subtests, scene, motion_name, response, tmp_path):
     before = response.copy(deep=True)
     known = {
         "scene": scene, "motion_name": motion_name, "response": response, "before": before,
@@ -99,24 +97,24 @@ def test_every_response_survives_netcdf_round_trip(
             function(**{name: known[name] for name in signature(function).parameters})
 
 
-ANSWERS = {
+RESULTS = {
     "rest": lambda system: system.equilibrium(),
     "held": lambda system: system.moment_rotation(([-0.1, 0.0, 1e-3, 0.2], "rad")),
     "modes": lambda system: system.frequencies(),
 }
 
 
-@pytest.mark.parametrize("kind", ANSWERS)
+@pytest.mark.parametrize("kind", RESULTS)
 def test_static_results_survive_netcdf_and_rebuild_their_system(scene, kind, tmp_path):
     if kind == "modes" and scene.startswith("rigid"):
         pytest.skip("on rigid ground a block at rest has no modes")
     system = SCENES[scene]()
-    answer = ANSWERS[kind](system)
+    answer = RESULTS[kind](system)
     again = through_file(answer, tmp_path)
     xr.testing.assert_identical(again, answer)
     rebuilt = rf.System.from_dataset(again)
     assert rebuilt.to_dict() == system.to_dict()
-    assert ANSWERS[kind](rebuilt).drop_attrs(deep=False).identical(answer.drop_attrs(deep=False))
+    assert RESULTS[kind](rebuilt).drop_attrs(deep=False).identical(answer.drop_attrs(deep=False))
     for name, row in answer.variables.items():
         assert row.attrs["long_name"], name
         assert ("units" in row.attrs) == ("flag_values" not in row.attrs), name

@@ -1,4 +1,4 @@
-"""The example of office contents: what it prints and writes."""
+"""The example of office contents: its output and its file."""
 
 import runpy
 import sys
@@ -17,10 +17,10 @@ def test_script_compares_medians_with_fema(monkeypatch, tmp_path, capsys):
         runpy.run_path(str(SCRIPT), run_name="__main__")
     assert left.value.code == 0
     table = pd.read_csv(tmp_path / "office_contents.csv", index_col="component")
-    told = capsys.readouterr().out
-    assert all(name in told for name in table.index)
+    stdout = capsys.readouterr().out
+    assert all(name in stdout for name in table.index)
     assert len(table) == 9
-    # among bookcases of one depth the taller falls first; all are of the order of FEMA's medians
+    # of bookcases of one depth the taller falls first; all are of the order of FEMA's medians
     shelves = table.iloc[:5]["computed [m/s]"]
     assert shelves.iloc[0] > shelves.iloc[2] > shelves.iloc[4]
     assert table["ratio"].between(0.6, 2.0).all()

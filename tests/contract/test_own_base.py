@@ -1,4 +1,4 @@
-"""A base of a user's own, from the example's file: all that holds for parts holds for it."""
+"""A user-defined base, from the example's file, behaves like a base of the package."""
 
 import importlib
 import json
@@ -35,9 +35,9 @@ SCENES = {
 }
 SETS = ("left_set", "right_set")
 every_scene = pytest.mark.parametrize("scene", SCENES)
-SECOND_LOOKS = {("coupled", "hardening"), ("cascade", "strength")}
-"""Scenes, in plain Python, with what makes pads elastic, in the long run only."""
-runs_in_every_scene = pytest.mark.parametrize(  # coupled and by cascade in plain Python
+LONG_CASES = {("coupled", "hardening"), ("cascade", "strength")}
+"""Scenes and changes that make pads elastic, in plain Python; only in the long tests."""
+runs_in_every_scene = pytest.mark.parametrize(  # coupled and cascade scenes in plain Python
     "scene",
     ["alone", *(pytest.param(one, marks=pytest.mark.wide) for one in SCENES if one != "alone")],
 )
@@ -71,7 +71,7 @@ def in_scene(pads, scene, **options):
 
 
 def noise(sign=1.0):
-    """A rough motion, or its mirror image."""
+    """Return a motion with content at all frequencies, or its mirror image."""
     rng = np.random.default_rng(12)
     across, upwards = (np.convolve(rng.normal(size=100), np.ones(5) / 5, "same") for _ in "xy")
     return rf.GroundMotion.from_arrays(
@@ -165,10 +165,10 @@ class TestDataset:
 
     def test_continued_run_starts_from_plastic_sets(self, system, response):
         first = system.simulate(PULSE, duration="1.5 s")
-        rest = system.simulate(initial=first, duration="1 s")
+        continued = system.simulate(initial=first, duration="1 s")
         for name in SETS:
-            assert rest[name].values[0] == first[name].values[-1] > 0.0
-            assert rest[name].values[-1] == pytest.approx(response[name].values[-1], rel=1e-9)
+            assert continued[name].values[0] == first[name].values[-1] > 0.0
+            assert continued[name].values[-1] == pytest.approx(response[name].values[-1], rel=1e-9)
 
 
 class TestLadder:
@@ -206,10 +206,10 @@ class TestLadder:
 
 class TestMechanics:
     @pytest.fixture(autouse=True)
-    def plainly_in_stacks(self, request):
-        """In stacks in plain Python; alone, the law is compiled."""
-        given = getattr(request.node, "callspec", None)
-        scene = "alone" if given is None else given.params.get("scene", "alone")
+    def stacks_in_plain_python(self, request):
+        """Run stacks in plain Python; the law of a single block is compiled."""
+        callspec = getattr(request.node, "callspec", None)
+        scene = "alone" if callspec is None else callspec.params.get("scene", "alone")
         with nullcontext() if scene == "alone" else plain_python():
             yield
 
@@ -225,19 +225,19 @@ class TestMechanics:
 
     @pytest.mark.parametrize("rotation", [-0.24, -0.1, 0.003, 0.02, 0.05, 0.2])
     def test_statics_of_stack_include_yielding(self, pads, rotation):
-        """Where bilinear pads have stored least of what it takes to press them from rest."""
+        """Bilinear pads at rest have the least energy stored."""
         system = rf.System(BLOCK, pads, CAP, SOIL, coupling="coupled")
         g, weight = 9.80665, 9.80665e4
         stiffness = 0.5e4 * (15 * math.sqrt(3 * g / (4 * math.hypot(0.5, 2.0)))) ** 2
         strength, hardening = 0.6 * weight, 0.1
-        settlement, of_cap_too = 0.5 * weight / stiffness, 1.4 * weight / 20e6
+        settlement, soil_settlement = 0.5 * weight / stiffness, 1.4 * weight / 20e6
 
         def pressed(height):
             down, at_yield = max(0.0, -height), strength / stiffness
             beyond = max(0.0, down - at_yield)
             return 0.5 * stiffness * (down**2 - (1.0 - hardening) * beyond**2)
 
-        def of_soil(left, right):  # energy of a bed whose ends are at heights
+        def soil_energy(left, right):  # energy of a bed, by the heights of its ends
             places = (np.arange(4000) + 0.5) / 4000
             down = np.maximum(0.0, -(left + (right - left) * places))
             return 0.5 * 20e6 * np.mean(down**2)
@@ -246,14 +246,15 @@ class TestMechanics:
             turned = held - cap
             normal = 2.0 * math.cos(turned) - press + settlement
             ends = [-press + side * 0.5 * math.sin(turned) for side in (1.0, -1.0)]
-            down = sunk - of_cap_too
-            across = 2.0 * math.sin(turned)  # both pads bear, so that its middle is held
+            down = sunk - soil_settlement
+            # both pads bear, so that the middle of the base is held
+            across = 2.0 * math.sin(turned)
             rise = (0.5 + normal) * math.cos(cap) - across * math.sin(cap) - down
-            of_cap = 4e3 * g * (0.25 * math.cos(cap) - down)
-            bed = of_soil(0.5 * math.sin(cap) - sunk, -0.5 * math.sin(cap) - sunk)
-            return weight * rise + of_cap + bed + sum(pressed(one) for one in ends)
+            cap_energy = 4e3 * g * (0.25 * math.cos(cap) - down)
+            bed = soil_energy(0.5 * math.sin(cap) - sunk, -0.5 * math.sin(cap) - sunk)
+            return weight * rise + cap_energy + bed + sum(pressed(one) for one in ends)
 
-        def least(held):
+        def minimum(held):
             sizes = np.array([1e-3, 1e-3, 1e-2])
             found = np.array([held / 50.0 / 1e-3, 1.0, 1.0])
             for method in ("Nelder-Mead", "BFGS", "Nelder-Mead"):
@@ -264,19 +265,19 @@ class TestMechanics:
                 ).x  # fmt: skip
             return energy(held, *(found * sizes))
 
-        moment = (least(rotation + 1e-4) - least(rotation - 1e-4)) / 2e-4
+        moment = (minimum(rotation + 1e-4) - minimum(rotation - 1e-4)) / 2e-4
         held = system.moment_rotation(f"{rotation} rad").restoring_moment.item()
         assert held == pytest.approx(moment, rel=1e-4)
 
     @runs_in_every_scene
     def test_a_mirrored_motion_gives_mirrored_histories(self, pads, scene):
-        """Bit for bit on pads alone; the moments of soil are rounded otherwise on either side."""
+        """Bit for bit on pads; moments of soil are rounded differently on either side."""
         system = in_scene(pads, scene)
         rounding = 0.0 if scene == "alone" else 1e-12
         one, other = (system.simulate(noise(sign), duration="1 s") for sign in (1.0, -1.0))
         exchanged = {
-            f"{side}_{what}": f"{opposite}_{what}"
-            for what in ("set", "reaction")
+            f"{side}_{quantity}": f"{opposite}_{quantity}"
+            for quantity in ("set", "reaction")
             for side, opposite in (("left", "right"), ("right", "left"))
         }
         turned = ("rotation", "horizontal_displacement", "base_shear")
@@ -294,7 +295,7 @@ class TestMechanics:
         ("scene", "changed"),
         [
             pytest.param(
-                scene, changed, marks=[pytest.mark.long] * ((scene, *changed) in SECOND_LOOKS)
+                scene, changed, marks=[pytest.mark.long] * ((scene, *changed) in LONG_CASES)
             )
             for scene in SCENES
             for changed in ({"strength": 1e6}, {"hardening": 1.0})
@@ -313,7 +314,7 @@ class TestMechanics:
             assert (ours[name] == 0.0).all()
 
     def test_energy_balances_with_landings_on_custom_ground(self, pads):
-        """Stage 1 lands on pads under the cap; its energies are those of a larger mass."""
+        """Stage 1 lands on pads under the cap, with the energies of a larger mass."""
         with restored_registrations(), plain_python():
             rf.register(Stilts)
             system = rf.System(
@@ -353,7 +354,7 @@ class TestMechanics:
 @pytest.mark.skipif(not COMPILED, reason="this run does without compilation")
 @pytest.mark.parametrize("scene", ["alone", pytest.param("coupled", marks=pytest.mark.long)])
 def test_compiled_and_uncompiled_runs_agree(pads, scene):
-    """Alone whole runs do; coupled what is observed along a run, of all equations of motion."""
+    """Complete runs of a single block; of coupled scenes, all equations along a run."""
     system = in_scene(pads, scene)
     with nullcontext() if scene == "alone" else plain_python(advance):
         compiled = system.simulate(PULSE, duration="0.8 s")
@@ -365,7 +366,7 @@ def test_compiled_and_uncompiled_runs_agree(pads, scene):
 
 
 def test_code_cache_is_separate_for_each_module_name(tmp_path, monkeypatch):
-    """As for a script that is run, and then imported; numba looks for the module by its name."""
+    """As for a script that is run and then imported: numba finds the module by its name."""
     monkeypatch.setenv("ROCKFRAME_CACHE_DIR", str(tmp_path / "code"))
     monkeypatch.syspath_prepend(tmp_path)
     text = (
@@ -386,13 +387,13 @@ def test_code_cache_is_separate_for_each_module_name(tmp_path, monkeypatch):
 
 
 class Bare(ext.OwnBase):
-    """A base that does not say how it carries a body."""
+    """A base without a support."""
 
     slot = "pads"
 
 
 class Roof(ext.OwnBase):
-    """A base for a place that is none."""
+    """A base for a place that does not exist."""
 
     slot = "roof"
 
@@ -401,7 +402,7 @@ class Roof(ext.OwnBase):
 
 
 class Copied(ext.OwnBase):
-    """Elastic pads, by the way of users."""
+    """Elastic pads, defined as users define them."""
 
     slot = "pads"
     frequency_ratio = ext.Ratio(ext.POSITIVE, doc="Vertical over rocking frequency.")
@@ -424,16 +425,16 @@ class Stilts(ext.OwnBase):
 
 
 class StiltSupport(ext.PadSupport):
-    """Pads that show their reactions by other names than those under the block."""
+    """Pads whose reactions have other names than under the block."""
 
     def law(self, body, mass, load_mass):
-        names = "soil_reaction", "contact_length"  # for want of names of their own
+        names = "soil_reaction", "contact_length"  # borrowed names
         columns = tuple(ext.Column(name, per_mass=True) for name in names)
         return replace(super().law(body, mass, load_mass), columns=columns)
 
 
 class Doubled(rf.TwoSpringSupport):
-    """Pads with a support of their own that nobody has registered."""
+    """Pads with an unregistered support."""
 
     def support(self, load):
         return ext.pads_under(self.replace(frequency_ratio=40), load)
@@ -441,11 +442,11 @@ class Doubled(rf.TwoSpringSupport):
 
 @ext.point_law
 class TiedPad(NamedTuple):
-    """An elastic pad that knows the tie of its pair."""
+    """An elastic pad that includes the tie of its pair."""
 
     stiffness: float
     damping: float
-    tie: float  # per unit mass, by the difference of the heights of both ends
+    tie: float  # per unit mass, for the difference in height of both ends
 
     def spring(self, point, own):
         return self.stiffness * point.pressed
@@ -463,24 +464,24 @@ class TiedPad(NamedTuple):
         return self.stiffness / self.damping
 
 
-of_pads = ext.Pads.force
+pad_force = ext.Pads.force
 
 
 class TiedPair(ext.Pads):
-    """Pads and a spring against the rotation of the base, whether they touch or not."""
+    """Pads and a rotational spring, in contact or not."""
 
     __slots__ = ()
 
     @ext.inlined
     def force(self, contact, line, own):
-        found = of_pads(self, contact, line, own)
+        found = pad_force(self, contact, line, own)
         moment = found.moment - self.law.tie * (line.left - line.right)
         return ext.BaseForce(found.upward, moment, found.dissipated)
 
 
 @dataclass(frozen=True)
 class TiedSupport(ext.PadSupport):
-    """Pads and a tie, whose support tells only its law."""
+    """Pads and a tie, whose support defines only its law."""
 
     tie: float
 
@@ -504,8 +505,13 @@ class TiedPads(ext.OwnBase):
 
 
 def column(**changed):
-    given = {"name": "wear", "dims": ext.TIME, "unit": ext.Unit.METRE, "long_name": "wear of it"}
-    return ext.Variable(**{**given, **changed})
+    declaration = {
+        "name": "wear",
+        "dims": ext.TIME,
+        "unit": ext.Unit.METRE,
+        "long_name": "wear of it",
+    }
+    return ext.Variable(**{**declaration, **changed})
 
 
 class TestRegistration:
@@ -521,7 +527,7 @@ class TestRegistration:
         elastic = rf.System(BLOCK, rf.TwoSpringSupport(frequency_ratio=20, damping_ratio=0.1))
         one, other = (each.simulate(PULSE, duration="1 s") for each in (own, elastic))
         np.testing.assert_array_equal(one.rotation, other.rotation)
-        rf.register(Copied, columns=[column()])  # once more, as when a notebook's cell is run again
+        rf.register(Copied, columns=[column()])  # again, as when a notebook's cell is repeated
 
     def test_unregistered_base_is_refused(self):
         words = r"(?s)Copied\(frequency_ratio=20\.0\) is not a par.*call .*register\(Copied\) first"
@@ -578,10 +584,10 @@ class TestRegistration:
                 Nowhere,
                 columns=[column(), column(name="2nd", dims=("mode",), unit="metros"), None],
             )
-        told = str(caught.value)
-        assert told.startswith("register: ")
+        message = str(caught.value)
+        assert message.startswith("register: ")
         for fault in ("Nowhere.slot", "no method support", "'2nd'", "('mode',)", "metros", "None"):
-            assert fault in told
+            assert fault in message
         assert rows == SCHEMA
         assert kinds == parts_of._KINDS
 
@@ -592,7 +598,7 @@ class TestRegistration:
 
     def test_a_subclass_with_another_support_needs_its_own_registration(self, yielding):
         class SofterPads(yielding.YieldingPads):
-            """Pads of another stiffness."""
+            """Pads with another stiffness."""
 
             def support(self, load):
                 return yielding.YieldingPads(**{**GIVEN, "frequency_ratio": 10}).support(load)
@@ -612,7 +618,7 @@ class TestRegistration:
 
     def test_bases_with_same_outputs_in_one_stack_are_refused(self, pads):
         class Twins(Stilts):
-            """Pads under the cap that show what those under the block show."""
+            """Pads under the cap with the outputs of those under the block."""
 
             def support(self, load):
                 return ext.pads_under(*pads.simpler(), load)
@@ -626,14 +632,14 @@ class TestRegistration:
         names = "near_reaction", "far_reaction"
 
         class UnseenSupport(StiltSupport):
-            """Pads under names that only their user knows."""
+            """Pads with outputs under user-defined names."""
 
             def law(self, body, mass, load_mass):
                 columns = tuple(ext.Column(name, per_mass=True) for name in names)
                 return replace(super().law(body, mass, load_mass), columns=columns)
 
         class Unseen(Stilts):
-            """Pads in the place of soil, whose sum nobody shows."""
+            """Pads in the place of soil, without an output of their sum."""
 
             friction = ext.Ratio(ext.POSITIVE, doc="Of the cap.", default=None)
 

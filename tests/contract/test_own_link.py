@@ -1,4 +1,4 @@
-"""A link of a user's own, from the example's file."""
+"""A user-defined link, from the example's file."""
 
 import importlib.util
 import itertools
@@ -29,14 +29,14 @@ NUMBERS = itertools.count()
 def example():
     spec = importlib.util.spec_from_file_location("own_link", FILE)
     module = importlib.util.module_from_spec(spec)
-    sys.modules["own_link"] = module  # where its machine code looks for it
-    spec.loader.exec_module(module)  # which registers the rope: a result that is read needs no more
+    sys.modules["own_link"] = module  # required by its machine code
+    spec.loader.exec_module(module)  # registers the rope; reading results needs no more
     return module
 
 
 def test_rope_runs_and_energy_balances(example):
     system = rf.System(BLOCK, PADS, example.Rope(**POINTS, reach="0.1 m"))
-    with plain_python():  # beside links of other laws it is compiled
+    with plain_python():  # with links of other laws it is compiled
         run = system.simulate(PULSE, free_vibration="1 s")
     assert float(run.energy_residual) < 1e-8
     assert float(run.peak_restrainer_force[0]) > 0.0
@@ -76,7 +76,7 @@ def test_page_names_existing_files():
 @pytest.mark.wide
 @pytest.mark.parametrize(
     "entries",
-    # in the long run the law is compiled in what is observed and in energies
+    # the long tests compile the law in outputs and energies
     [(), pytest.param((advance,), marks=pytest.mark.long)],
     ids=["in plain Python", "compiled"],
 )
@@ -90,14 +90,14 @@ def test_links_of_several_laws_work_in_one_scene(example, entries):
     assert found.restrainer.values.tolist() == ["rope", "restrainer 2"]
     assert float(found.energy_residual) < 1e-8
     assert float(found.peak_restrainer_force.min()) > 0.0
-    # each beside one that is never taut moves as it does alone
+    # each moves as alone with a second link that is never taut
     idle = tie.replace(slack="1 km")
     with plain_python():
-        alone, beside = (
+        single, combined = (
             rf.System(BLOCK, PADS, rope, *others).simulate(PULSE, free_vibration="0.5 s")
             for others in ((), (idle,))
         )
-    assert abs(beside.rotation - alone.rotation).max() < 1e-8
+    assert abs(combined.rotation - single.rotation).max() < 1e-8
 
 
 def test_invalid_link_law_raises_with_all_faults():

@@ -1,4 +1,4 @@
-"""A scene of a user's own, from the example's file: all that holds for scenes holds for it."""
+"""A user-defined scene, from the example's file, behaves like a scene of the package."""
 
 import json
 import math
@@ -144,9 +144,9 @@ class TestRun:
 
     def test_run_can_be_continued(self, system, response):
         first = system.simulate(PULSE)
-        rest = system.simulate(initial=first, duration="1 s")
-        assert float(rest.slip[0]) == float(first.slip[-1])
-        assert float(rest.slip[-1]) == pytest.approx(float(response.slip[-1]), rel=1e-9)
+        continued = system.simulate(initial=first, duration="1 s")
+        assert float(continued.slip[0]) == float(first.slip[-1])
+        assert float(continued.slip[-1]) == pytest.approx(float(response.slip[-1]), rel=1e-9)
 
     def test_outputs_none_leaves_out_own_variables(self, system):
         bare = system.simulate(PULSE, outputs=None)
@@ -175,12 +175,12 @@ class TestStudies:
             system, PULSE, friction=[0.2, 0.26], width=["1 m", "1.1 m"], **RUN,
             outputs=["slip", "edge_height"], progress=False,
         )  # fmt: skip
-        alone = rf.case(runs, friction=0.26, width="1 m").simulate()
-        here = runs.sel(friction=0.26, width=1.0).isel(motion=0)
+        single = rf.case(runs, friction=0.26, width="1 m").simulate()
+        selected = runs.sel(friction=0.26, width=1.0).isel(motion=0)
         for name in ("peak_rotation", "residual_slip", "peak_edge_height"):
-            assert float(here[name]) == float(alone[name])
-        np.testing.assert_array_equal(here.slip, alone.slip)
-        np.testing.assert_array_equal(here.edge_height, alone.edge_height)
+            assert float(selected[name]) == float(single[name])
+        np.testing.assert_array_equal(selected.slip, single.slip)
+        np.testing.assert_array_equal(selected.edge_height, single.edge_height)
 
     def test_sweep_over_function_that_builds_scene(self, own):
         def scene(mu):
@@ -192,7 +192,7 @@ class TestStudies:
 
     @pytest.mark.long
     def test_many_sweep_cases_match_single_runs(self, system, monkeypatch):
-        """Side by side in lanes where it can be compiled; each comes to an end."""
+        """In lanes where it can be compiled; each case ends."""
         monkeypatch.setattr(study, "COMPILING_SHARE", math.inf)
         frictions = np.linspace(0.255, 0.4, 2 * study.MIN_CASES_IN_LANES if COMPILED else 50)
         runs = rf.sweep(system, PULSE, friction=frictions, accuracy="fast", progress=False)
@@ -221,18 +221,23 @@ def test_compiled_and_uncompiled_runs_agree(system):
 
 
 class Wedge(ext.Component):
-    """A part of nothing so far."""
+    """A part of no scene."""
 
     friction = ext.Ratio(ext.POSITIVE, doc="Coefficient of friction.", default=0.3)
 
 
 class Bare(ext.OwnScene):
-    """A scene that says nothing of itself."""
+    """A scene without declarations."""
 
 
 def column(**changed):
-    given = {"name": "wear", "dims": ext.TIME, "unit": ext.Unit.METRE, "long_name": "wear of it"}
-    return ext.Variable(**{**given, **changed})
+    declaration = {
+        "name": "wear",
+        "dims": ext.TIME,
+        "unit": ext.Unit.METRE,
+        "long_name": "wear of it",
+    }
+    return ext.Variable(**{**declaration, **changed})
 
 
 class TestRegistration:
@@ -262,7 +267,7 @@ class TestRegistration:
 
     def test_a_registered_scene_is_simulated(self, wedged, system):
         rf.register(wedged)
-        rf.register(wedged)  # once more, as when a notebook's cell is run again
+        rf.register(wedged)  # again, as when a notebook's cell is repeated
         response = rf.System(BLOCK, Wedge(friction=0.26)).simulate(PULSE)
         np.testing.assert_array_equal(response.slip, system.simulate(PULSE).slip)
         with pytest.raises(AssemblyError) as caught:
@@ -271,7 +276,7 @@ class TestRegistration:
 
     def test_columns_can_have_own_dimensions(self, wedged):
         class Layered(wedged):
-            """With a table of its own."""
+            """Has an additional table."""
 
             def answers(self, histories, before, after):
                 slip = histories["slip"]
@@ -305,7 +310,7 @@ class TestRegistration:
     )
     def test_wrong_answers_warn_without_losing_run(self, wedged, answer, words):
         class Wrong(wedged):
-            """Gives what it has not declared."""
+            """Returns undeclared outputs."""
 
             def answers(self, histories, before, after):
                 return answer if answer is None else dict(answer)
@@ -321,14 +326,14 @@ class TestRegistration:
         before = [dict(table) for table in TABLES]
         with pytest.raises(ComponentError) as caught:
             rf.register(Bare, columns=[column(dims=("layer",)), column(name="2nd", dims=()), 3])
-        told = str(caught.value)
+        message = str(caught.value)
         for fault in (
             "Bare has no name model", "Bare has no method contact_model()",
             "Bare has no method words()",
             "Bare.made_of must name slots", "nothing labels 'layer'", "a column is called '2nd'",
             "columns must be Variables, got 3", "Bare has no method answers(",
         ):  # fmt: skip
-            assert fault in told
+            assert fault in message
         assert before == [dict(table) for table in TABLES]
 
     @pytest.mark.parametrize(
@@ -353,7 +358,7 @@ class TestRegistration:
 
     def test_inconsistent_table_sizes_are_reported_together(self, wedged):
         class Odd(wedged):
-            """Has sizes of another system."""
+            """Has the sizes of another system."""
 
             def contact_model(self):
                 model = super().contact_model()
@@ -377,7 +382,7 @@ class TestRegistration:
             """Elastic pads."""
 
         class Counted(ext.OwnBase):
-            """Pads that tell how often they were left."""
+            """Pads that count how often they were left."""
 
             slot = "pads"
 
@@ -488,7 +493,7 @@ class TestDiagnostics:
         assert "edge_height" in response
 
     @pytest.mark.parametrize(
-        ("given", "words"),
+        ("declaration", "words"),
         [
             ({"name": "rotation"}, "there is a variable 'rotation' of another meaning"),
             ({"name": "base_shear"}, "there is a variable 'peak_base_shear' of another meaning"),
@@ -501,10 +506,10 @@ class TestDiagnostics:
             ({"columns": [column()]}, "columns are for bases and scenes"),
         ],
     )
-    def test_wrong_declarations_are_refused(self, given, words):
+    def test_wrong_declarations_are_refused(self, declaration, words):
         right = {"name": "edge", "unit": "m", "long_name": "height of the edge"}
         with pytest.raises(ComponentError, match=words):
-            rf.register(pushed, **{**right, **given})
+            rf.register(pushed, **{**right, **declaration})
         assert "edge" not in SCHEMA
 
     def test_name_and_unit_are_refused_for_scenes_and_diagnostics(self, own):

@@ -54,7 +54,7 @@ def test_example_imports_nothing_private():
 
 @pytest.mark.parametrize("load", [0.2, 0.3, 0.5, 0.7])
 def test_static_moment_converges_to_closed_form(bed, monkeypatch, load):
-    """Springs are midpoints of parts of the base: their error falls with the square."""
+    """Springs at midpoints of parts of the base: the error falls with the square of their size."""
     apart = []
     for count in (20, 80):
         monkeypatch.setattr(bed, "SPRINGS", count)
@@ -77,15 +77,15 @@ def test_energies_balance_while_springs_yield_lift_and_land(bed, monkeypatch, da
         noise(), duration="0.9 s", accuracy="reference", outputs="energy"
     )
     for side in ("left", "right"):
-        kept = response[f"{side}_soil_set"].values
-        assert kept[-1] > 0.0
-        assert (np.diff(kept) >= 0.0).all()
+        permanent = response[f"{side}_soil_set"].values
+        assert permanent[-1] > 0.0
+        assert (np.diff(permanent) >= 0.0).all()
     assert {0, 1, 2} & set(response.contact_state.values.tolist()) != {0}
     assert float(response.energy_residual) <= 1e-8
 
 
 def test_springs_that_cannot_yield_match_elastic_bed(bed, monkeypatch):
-    """Of many springs, at small settlement: the bed in closed form is their limit."""
+    """For many springs at small settlement the limit is the bed in closed form."""
     monkeypatch.setattr(bed, "SPRINGS", 64)
     with plain_python():
         many = rf.System(WALL, soil(bed, 1e-6, 0.0)).simulate(noise(), duration="0.4 s")

@@ -1,7 +1,7 @@
-"""The snippets of the guide, the recipes and the README run as they stand.
+"""The code on the pages of the guide, the recipes and the README runs.
 
-A block of text right after a snippet is what the snippet prints. Blocks of TOML that begin with
-the name of a file in a comment are written to it, and commands in consoles are carried out.
+A block of text directly after a snippet is its expected output. Blocks of TOML that begin with
+the name of a file in a comment are written to it, and commands of consoles are executed.
 """
 
 import re
@@ -32,18 +32,18 @@ RECORDS = {"record.AT2": "NIS090.AT2", "TCU128-N.AT2": "PEERSMD_CHICHI_TCU128-N.
 @pytest.mark.filterwarnings("ignore::rockframe.errors.RockframeWarning")
 @pytest.mark.parametrize("page", PAGES, ids=[page.name for page in PAGES])
 def test_all_snippets_of_page_run(page, tmp_path, monkeypatch, capsys, request):
-    if page.stem != "reports":  # of one page figures of reports are drawn
+    if page.stem != "reports":  # the page on reports draws their figures
         request.getfixturevalue("no_pictures")
     text = page.read_text(encoding="utf-8")
     snippets = SNIPPET.findall(text)
-    # a page on an example shows the file itself, which runs as it stands
+    # a page on an example includes the file itself
     assert snippets or "literalinclude} ../../examples/" in text, f"{page.name} shows no code"
     for name, source in RECORDS.items():
         if name in text:
             shutil.copy(record_path(source), tmp_path / name)
     monkeypatch.chdir(tmp_path)
     names: dict[str, object] = {}
-    for language, snippet, shown in snippets:
+    for language, snippet, expected in snippets:
         capsys.readouterr()
         if language == "toml":
             named = FILE.match(snippet)
@@ -54,8 +54,8 @@ def test_all_snippets_of_page_run(page, tmp_path, monkeypatch, capsys, request):
             run_console(snippet, capsys, monkeypatch)
             continue
         exec(snippet, names)  # noqa: S102
-        if shown:
-            assert lines(capsys.readouterr().out) == lines(shown)
+        if expected:
+            assert lines(capsys.readouterr().out) == lines(expected)
 
 
 def lines(text):

@@ -1,4 +1,4 @@
-"""Walls, frames, tendons, loads, ties and mixed bases, and all that scenes offer: a table."""
+"""Walls, frames, tendons, loads, ties and mixed bases support every function of the package."""
 
 import json
 from contextlib import nullcontext
@@ -119,7 +119,7 @@ def describes(name, folder):
 
 
 def statics(name, folder):
-    # of the mixture before a corner lifts from the rigid joint
+    # of mixed bases, before a corner lifts from the rigid joint
     angles = [0.005, 0.01] if name == MIXED else [0.02, 0.05]
     found = scene(name).moment_rotation((np.array(angles), "rad"))
     assert np.isfinite(found.restoring_moment).all()
@@ -160,16 +160,16 @@ def sweep_and_fragility(name, folder):
         scene(name), motions={"pulse": PULSE}, scale=[0.5, 1.0, 2.0], axes={axis: values},
         progress=False, **plan(name),
     )  # fmt: skip
-    own = next(one for one in runs.peak_rotation.dims if one not in ("scale", "motion"))
+    varied = next(dim for dim in runs.peak_rotation.dims if dim not in ("scale", "motion"))
     assert runs.peak_rotation.size == 6
-    # one of them is another scene than the other
+    # one differs in its scene
     others = runs.isel(motion=0)
     assert any(
-        (abs(one.diff(own)) > 0).any()
+        (abs(one.diff(varied)) > 0).any()
         for one in others.data_vars.values()
-        if own in one.dims and one.dtype.kind in "fi"
+        if varied in one.dims and one.dtype.kind in "fi"
     )
-    first = runs.isel({own: 0}, drop=True)
+    first = runs.isel({varied: 0}, drop=True)
     assert rf.fragility(first, limits=[0.1]).sizes["limit_state"] == 2
 
 
@@ -177,7 +177,7 @@ def files(name, folder):
     system = scene(name)
     assert rf.System.from_dict(json.loads(json.dumps(system.to_dict()))) == system
     *_, slots, text = SCENES[name]
-    # tables of one part may not be split by others
+    # tables of one part must be contiguous
     (folder / "scene.toml").write_text("".join(IN_FILE[slot] for slot in slots) + text)
     assert read_scene(folder / "scene.toml").system == system
     run_of(name).to_netcdf(folder / "run.nc")
@@ -212,7 +212,7 @@ CAPABILITIES = (
     describes, statics, figures, ladder_and_tradeoff, certificate, critical_scale,
     sweep_and_fragility, files, report_and_table, certified_report, links,
 )  # fmt: skip
-SLOWEST = (ladder_and_tradeoff, certificate, certified_report)  # of many steps, or of many runs
+SLOWEST = (ladder_and_tradeoff, certificate, certified_report)  # many steps or many runs
 QUICK = ("stiff wall", "frame", "tendon")
 """Scenes of which even these take little."""
 
@@ -235,5 +235,5 @@ def test_every_part_supports_every_capability(name, capability, tmp_path):
         pytest.skip("many runs of scenes that are slow in plain Python")
     with (
         plain_python() if name == MIXED else nullcontext()
-    ):  # its equations take longest to compile
+    ):  # its equations take the longest to compile
         capability(name, tmp_path)

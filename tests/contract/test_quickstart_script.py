@@ -38,19 +38,19 @@ def test_a_missing_folder_is_made(script, record, tmp_path):
 
 def test_invalid_folder_is_reported_before_simulation(script, record, capsys):
     assert script(record, "--folder", record) == 1
-    shown = capsys.readouterr()
-    assert shown.out == ""
-    assert shown.err.startswith("quickstart: ")
-    assert shown.err.count("\n") == 1
+    captured = capsys.readouterr()
+    assert captured.out == ""
+    assert captured.err.startswith("quickstart: ")
+    assert captured.err.count("\n") == 1
 
 
 def test_errors_are_one_line(script, record, tmp_path, capsys):
     assert script(record, "--component", "XYZ", "--folder", tmp_path) == 1
     assert "'XYZ'" in capsys.readouterr().err
     assert script(tmp_path / "none.AT2", "--folder", tmp_path) == 1
-    told = capsys.readouterr().err
-    assert "none.AT2" in told
-    assert told.count("\n") == 1
+    stderr = capsys.readouterr().err
+    assert "none.AT2" in stderr
+    assert stderr.count("\n") == 1
 
 
 def test_component_option_requires_a_record(script, capsys):

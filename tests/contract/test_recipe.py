@@ -1,4 +1,4 @@
-"""The recipe for conda-forge asks for what pyproject.toml asks for, and is of this version."""
+"""The recipe for conda-forge has the dependencies of pyproject.toml and the current version."""
 
 import re
 import tomllib
@@ -15,15 +15,15 @@ OPTIONAL = ("records", "progress", "proof", "distributed", "lazy")
 
 
 def listed(text, head):
-    """Return the entries of a list of the recipe, without what is a setting of its own."""
+    """Return the entries of a list of the recipe, without its own settings."""
     block = re.search(rf"^  {head}:\n((?:    .*\n)+)", text, re.MULTILINE)[1]
     return {entry for entry in re.findall(r"^    - (.+)$", block, re.MULTILINE) if "$" not in entry}
 
 
 def as_conda(dependencies):
-    """Write dependencies of PyPI as conda has them."""
-    found = [re.fullmatch(r"([\w-]+)(>=[\w.]+)", one) for one in dependencies]
-    return {f"{CONDA_NAMES.get(one[1], one[1])} {one[2]}" for one in found}
+    """Return dependencies of PyPI under their names in conda."""
+    matches = [re.fullmatch(r"([\w-]+)(>=[\w.]+)", dependency) for dependency in dependencies]
+    return {f"{CONDA_NAMES.get(match[1], match[1])} {match[2]}" for match in matches}
 
 
 def test_conda_recipe_matches_pyproject():
@@ -32,7 +32,7 @@ def test_conda_recipe_matches_pyproject():
     project = everything["project"]
     extras = project["optional-dependencies"]
     assert listed(text, "run") == as_conda([*project["dependencies"], *extras["fast"]])
-    optional = [one for name in OPTIONAL for one in extras[name]]
+    optional = [dependency for name in OPTIONAL for dependency in extras[name]]
     assert listed(text, "run_constraints") == as_conda(optional)
     assert listed(text, "host") == {"pip", *as_conda(everything["build-system"]["requires"])}
     assert f'python_min: "{project["requires-python"].removeprefix(">=")}"' in text

@@ -1,4 +1,4 @@
-"""The page on random scenes, against what its command found."""
+"""The page on random scenes agrees with the data of its command."""
 
 import json
 
@@ -15,24 +15,24 @@ NAMES = {
 
 
 def test_scenes_table_matches_data():
-    found = {
+    rows_by_kind = {
         row["kind"]: row for row in json.loads((DOCS / "data/maximal_oracle.json").read_text())
     }
     rows = table("validation_scenes.md", HEAD)
     assert [row[0] for row in rows] == list(NAMES)
     for name, *cells in rows:
-        one = found[NAMES[name]]
+        expected = rows_by_kind[NAMES[name]]
         assert cells == [
-            str(one["scenes"]),
-            str(one["agrees"]),
-            f"{one['worst_agreeing']:.0e}".replace("e-0", "e-"),
-            str(one["chaos"]),
-            str(one["sensitive"] + one["disagrees"]),
-            str(one["overturned"]),
-            str(len(one["verdicts_differ"])),
+            str(expected["scenes"]),
+            str(expected["agrees"]),
+            f"{expected['worst_agreeing']:.0e}".replace("e-0", "e-"),
+            str(expected["chaos"]),
+            str(expected["sensitive"] + expected["disagrees"]),
+            str(expected["overturned"]),
+            str(len(expected["verdicts_differ"])),
         ]
-        assert one["scenes"] >= 1000
-        assert one["disagrees"] == one["sensitive"] == 0
+        assert expected["scenes"] >= 1000
+        assert expected["disagrees"] == expected["sensitive"] == 0
 
 
 LEVELS = (
@@ -49,19 +49,19 @@ def test_accuracy_table_matches_data():
     rows = table("validation_scenes.md", LEVELS)
     assert [row[0] for row in rows] == ["tight", '`"standard"`', '`"fast"`']
     for name, *cells in rows:
-        here = [row for row in found if row["level"] == name.strip('`"')]
+        level_rows = [row for row in found if row["level"] == name.strip('`"')]
         counts = [
-            sum(row[label] for row in here)
+            sum(row[label] for row in level_rows)
             for label in ("scenes", "agrees", "chaos", "sensitive", "by tolerance")
         ]
-        counts.append(sum(row["disagrees"] + row["apart"] for row in here))
+        counts.append(sum(row["disagrees"] + row["apart"] for row in level_rows))
         counts += [
-            sum(len(row[label]) for row in here)
+            sum(len(row[label]) for row in level_rows)
             for label in ("verdicts_differ", "verdicts_told", "peaks_far", "peaks_far_told")
         ]
         assert cells == [str(count) for count in counts]
         assert counts[0] >= 5000
-        assert sum(row["disagrees"] for row in here) == 0
+        assert sum(row["disagrees"] for row in level_rows) == 0
         if name != '`"fast"`':
             assert counts[6] == 0
 
@@ -75,22 +75,22 @@ TIED = (
 def test_tied_stacks_table_matches_data():
     found = json.loads((DOCS / "data/chain_ties_oracle.json").read_text())
     rows = table("validation_scenes.md", TIED)
-    for one, row in zip(found, rows, strict=True):
+    for expected, row in zip(found, rows, strict=True):
         keys = ("bodies", "scenes", "agree", "uplifting", "overturning", "events")
         cells = [row[i] for i in (0, 1, 2, 5, 6, 7)]
-        assert cells == [str(one[key]) for key in keys]
-        assert [float(row[3]), float(row[4])] == [one["median"], one["worst"]]
+        assert cells == [str(expected[key]) for key in keys]
+        assert [float(row[3]), float(row[4])] == [expected["median"], expected["worst"]]
 
 
 def test_second_seed_table_matches_data():
-    found = {
+    rows_by_kind = {
         row["kind"]: row for row in json.loads((DOCS / "data/maximal_oracle_28.json").read_text())
     }
     rows = table("validation_scenes.md", HEAD.replace("| scene |", "| scene, seed 28 |"))
-    assert [NAMES[row[0]] for row in rows] == list(found)
+    assert [NAMES[row[0]] for row in rows] == list(rows_by_kind)
     for name, *cells in rows:
-        one = found[NAMES[name]]
-        kept = ("scenes", "agrees", "chaos", "overturned")
-        assert [cells[i] for i in (0, 1, 3, 5)] == [str(one[key]) for key in kept]
-        assert int(cells[4]) == one["sensitive"] + one["disagrees"]
-        assert int(cells[6]) == len(one["verdicts_differ"])
+        expected = rows_by_kind[NAMES[name]]
+        keys = ("scenes", "agrees", "chaos", "overturned")
+        assert [cells[i] for i in (0, 1, 3, 5)] == [str(expected[key]) for key in keys]
+        assert int(cells[4]) == expected["sensitive"] + expected["disagrees"]
+        assert int(cells[6]) == len(expected["verdicts_differ"])

@@ -1,4 +1,4 @@
-"""The one table of variables: names, units, flags."""
+"""The schema of all variables: names, units, flags."""
 
 import re
 
@@ -12,7 +12,7 @@ from rockframe.results.schema import ENERGIES, SCHEMA
 
 pytestmark = pytest.mark.contract
 
-# dimensions in kg, m, s, rad of everything that the contract names
+# dimensions in kg, m, s, rad of all documented variables
 DIMENSIONS = {
     "time": (0, 0, 1, 0),
     "rotation": (0, 0, 0, 1),
@@ -317,7 +317,7 @@ def test_units_have_the_dimensions_of_their_quantities():
         )
         unit = cf_units.Unit(text)
         assert unit.convert(1.0, cf_units.Unit(expected or "1")) == 1.0, name
-        # UDUNITS takes the radian for a pure number; the spelling tells them apart
+        # in UDUNITS the radian is dimensionless; only the spelling differs
         assert ("rad" in text) == bool(powers[3]), name
 
 

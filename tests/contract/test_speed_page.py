@@ -1,4 +1,4 @@
-"""What the page "Speed and accuracy" says that parts and histories cost is what was measured."""
+"""Costs of parts and histories on the page "Speed and accuracy" are the measured ones."""
 
 import json
 

@@ -97,12 +97,12 @@ def test_labels_follow_schema_and_cf(runs, tmp_path):
 
 def test_every_case_has_status_and_message(runs):
     assert runs.status.dtype == np.int8
-    told = runs.message
-    assert told.dtype == object
-    assert all(isinstance(text, str) and text for text in told.values.ravel())
-    assert told.shape == runs.status.shape
+    messages = runs.message
+    assert messages.dtype == object
+    assert all(isinstance(text, str) and text for text in messages.values.ravel())
+    assert messages.shape == runs.status.shape
     refused = runs.status == 6
-    assert (~told.isin(["none", STILL_MOVING]) == refused).all()
+    assert (~messages.isin(["none", STILL_MOVING]) == refused).all()
     finished = runs.peak_rotation.notnull()
     assert (finished == ~refused).all()
     assert runs.attrs["verdict"].startswith(f"Of all {runs.status.size} cases of the sweep ")
@@ -127,7 +127,7 @@ def histories_missing(runs):
     return int(empty.sum())
 
 
-@pytest.mark.long  # nor is tqdm there where all runs in the caller, in test_imports.py
+@pytest.mark.long  # test_imports.py covers runs in the caller without tqdm
 def test_sweep_runs_without_tqdm_and_dask():
     code = """
 import sys

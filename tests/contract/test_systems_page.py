@@ -1,4 +1,4 @@
-"""What the page "Systems" says of options, arguments and scenes is what they do."""
+"""The page "Systems" describes options, arguments and scenes correctly."""
 
 import inspect
 import re
@@ -65,13 +65,13 @@ def test_documented_arguments_and_defaults_of_simulate_match():
     arguments = dict(inspect.signature(rf.System.simulate).parameters)
     del arguments["self"]
     assert [row[0].strip("`") for row in rows] == list(arguments)
-    for (_, said_default, *_), argument in zip(rows, arguments.values(), strict=True):
+    for (_, documented_default, *_), argument in zip(rows, arguments.values(), strict=True):
         if argument.default is None:
-            assert "`" not in said_default  # in words: what None stands for
+            assert "`" not in documented_default  # in words: the meaning of None
         else:
             default = argument.default
             shown = f'"{default}"' if isinstance(default, str) else repr(default)
-            assert said_default == f"`{shown}`"
+            assert documented_default == f"`{shown}`"
 
 
 def test_every_argument_is_explained_on_linked_page():
@@ -83,7 +83,7 @@ def test_every_argument_is_explained_on_linked_page():
 
 
 def test_documented_energies_are_reproduced():
-    """The numbers of "Energy" and of "Impact and restraint", on the same block and pads."""
+    """Numbers of "Energy" and of "Impact and restraint", for the same block and pads."""
     words = "of 4.85 m by 19.4 m and 600 t on pads of"
     assert words in " ".join(read("theory/energy.md").split())
     separations, landings, leading, centre = numbers_in(

@@ -1,4 +1,4 @@
-"""Runs near and far from the boundary, and certificates of pretended runs."""
+"""Runs near and far from the boundary, and certificates of artificial runs."""
 
 from functools import cache
 
@@ -44,8 +44,8 @@ def edge(low=1.0, high=8.0):
     return 0.5 * (low + high)
 
 
-def pretended(overturns):
-    """Return a run that overturns where a rule of scene and plan says so; None: is cut off."""
+def artificial_run(overturns):
+    """Return a run whose verdict is a function of scene and plan; None means unfinished."""
 
     def run(system, plan):
         verdict = overturns(system, plan)
@@ -55,7 +55,7 @@ def pretended(overturns):
     return run
 
 
-def planned(rtol=1e-4):
+def plan_of(rtol=1e-4):
     return plan_run(
         SYSTEM.assembly,
         PULSE,
@@ -70,5 +70,5 @@ def planned(rtol=1e-4):
 
 
 def certificate_of(overturns, rtol=1e-4):
-    run, plan = pretended(overturns), planned(rtol)
+    run, plan = artificial_run(overturns), plan_of(rtol)
     return certify(SYSTEM.assembly, plan, run(SYSTEM.assembly, plan), rf.Certification(), run)

@@ -1,4 +1,4 @@
-"""Parts and runs that take one argument from a test."""
+"""Parts and runs with one argument chosen by a test."""
 
 import pint
 import pytest
@@ -15,12 +15,12 @@ def make_block(**changed):
 
 
 def make_pads(**changed):
-    given = dict(PADS)
+    arguments = dict(PADS)
     if "stiffness" in changed:
-        del given["frequency_ratio"]
+        del arguments["frequency_ratio"]
     if "damping" in changed:
-        del given["damping_ratio"]
-    return rf.TwoSpringSupport(**{**given, **changed})
+        del arguments["damping_ratio"]
+    return rf.TwoSpringSupport(**{**arguments, **changed})
 
 
 def make_system(**changed):

@@ -1,4 +1,4 @@
-"""Parts as a user's own module defines them."""
+"""Parts of a user's module."""
 
 from dataclasses import dataclass
 from typing import NamedTuple
@@ -26,11 +26,11 @@ class BreakingPads(rf.TwoSpringSupport):
 
 
 class HeavyBlock(rf.Block):
-    """A block of another name, with nothing of its own."""
+    """A block under another name, without additions."""
 
 
 class RoundedBlock(rf.Block):
-    """A block with round corners, of which the parameter is called like a property of blocks."""
+    """A block with round corners, whose parameter has the name of a property of blocks."""
 
     radius = Parameter(LENGTH, POSITIVE, doc="Radius of the corners.")
 
@@ -40,7 +40,7 @@ SHARES = {"pads": 1.0, 2: "which numba has no type for"}
 
 @ext.point_law
 class TabulatedPad(NamedTuple):
-    """An elastic pad whose law reads a dictionary of mixed keys, which cannot be compiled."""
+    """An elastic pad whose law reads a dictionary of mixed keys, so that it cannot be compiled."""
 
     stiffness: float
     damping: float

@@ -1,4 +1,4 @@
-"""Peaks and durations from both ends of steps, and from their insides."""
+"""Peaks and durations from both ends and the inside of steps."""
 
 import math
 
@@ -10,23 +10,23 @@ from rockframe.solve.trajectory import Steps
 
 
 def along(ends, starts, inside=None, length=0.5, events=None):
-    """Make steps of one length; `starts` tells those that begin anew, by their number."""
-    rows, shown = [], []
+    """Make steps of equal length; `starts` maps steps after an event to their first values."""
+    rows, values = [], []
     for step, end in enumerate(ends):
         if step in starts:
             rows.append([length * step, 0.0])
-            shown.append(starts[step])
+            values.append(starts[step])
         rows.append([length * (step + 1), length])
-        shown.append(end)
+        values.append(end)
     codes = np.zeros((len(rows), 2), dtype=np.int64)
     steps = Steps(np.array(rows), codes, width=0, exact=True)
-    shown = {"demand": np.array(shown)}
+    values = {"demand": np.array(values)}
 
     def straight(which):
-        start, end = shown["demand"][which - 1, None], shown["demand"][which, None]
+        start, end = values["demand"][which - 1, None], values["demand"][which, None]
         return {"demand": (start * (1.0 - FRACTIONS) + end * FRACTIONS).ravel()}
 
-    return AlongSteps(steps, shown, straight if inside is None else inside)
+    return AlongSteps(steps, values, straight if inside is None else inside)
 
 
 def demand(values):
@@ -34,13 +34,13 @@ def demand(values):
 
 
 def test_peak_just_after_an_event_is_found():
-    """The friction demand jumps at an event: the samples before it and long after see nothing."""
+    """The friction demand jumps at an event; samples before and long after it miss the peak."""
     found = along([1.0, 1.0, 1.0, 1.0], {0: 0.5, 2: 7.0})
     (peak,), (time,) = found.largest(demand)
     assert (peak, time) == (7.0, 1.0)
-    first, lasted = found.above(lambda values: values["demand"], 4.0)
+    first, duration = found.above(lambda values: values["demand"], 4.0)
     assert first == 1.0
-    assert lasted == pytest.approx(0.5 * (7.0 - 4.0) / (7.0 - 1.0))
+    assert duration == pytest.approx(0.5 * (7.0 - 4.0) / (7.0 - 1.0))
 
 
 def test_peak_just_before_an_event_is_found():
@@ -64,14 +64,14 @@ def test_infinite_demand_is_interpolated_by_its_reciprocal():
     found = along([2.0, 0.0], {0: math.inf})
     (peak,), (time,) = found.largest(demand)
     assert (peak, time) == (math.inf, 0.0)
-    first, lasted = found.above(lambda values: values["demand"], 4.0)
-    assert (first, lasted) == (0.0, 0.25)  # 1/q from 0 to 1/2 passes 1/4 in the middle
+    first, duration = found.above(lambda values: values["demand"], 4.0)
+    assert (first, duration) == (0.0, 0.25)  # 1/q from 0 to 1/2 passes 1/4 in the middle
 
 
 def test_demand_never_above_limit_has_no_time():
-    first, lasted = along([1.0, 2.0], {0: 0.0}).above(lambda values: values["demand"], 2.0)
+    first, duration = along([1.0, 2.0], {0: 0.0}).above(lambda values: values["demand"], 2.0)
     assert math.isnan(first)
-    assert lasted == 0.0
+    assert duration == 0.0
 
 
 def test_first_of_equal_peaks_is_reported():
@@ -90,7 +90,7 @@ def test_peak_at_step_end_is_found_among_many_candidate_steps():
 
 @pytest.mark.parametrize("jump", [1, 4])
 def test_no_parabola_is_fitted_through_a_kink(jump):
-    """A base that presses again and slips needs its friction at once, and no more than that."""
+    """A base in renewed contact that slips needs its friction at once, and no more."""
 
     def inside(which):
         return {"demand": np.tile(np.where(np.arange(1, 8) < jump, 0.0, 0.4), len(which))}

@@ -1,4 +1,4 @@
-"""Putting a system together and asking it to run: what fits, what does not, what is said."""
+"""Assembling systems: parts that fit, refusals, options."""
 
 import copy
 import inspect
@@ -192,22 +192,22 @@ def test_invalid_system_description_is_refused(description):
 @pytest.mark.parametrize(
     ("change", "words"),
     [
-        (lambda told: told.pop("parts"), "found no 'parts'; expected a list of them"),
+        (lambda description: description.pop("parts"), "found no 'parts'; expected a list of them"),
         (
-            lambda told: told.update(gravitiy="9 m/s^2"),
+            lambda description: description.update(gravitiy="9 m/s^2"),
             "found 'gravitiy'; was 'gravity' meant.; expected parts, .*gravity",
         ),
         (
-            lambda told: told["parts"][0].update(hight="2 m"),
+            lambda description: description["parts"][0].update(hight="2 m"),
             "found 'hight' in Block; was 'height' meant.; .*height",
         ),
     ],
 )
 def test_wrong_keys_in_a_description_are_named(change, words):
-    told = json.loads(json.dumps(assembled("coupled").to_dict()))
-    change(told)
+    description = json.loads(json.dumps(assembled("coupled").to_dict()))
+    change(description)
     with pytest.raises(SchemaError, match=f"does not describe a system: {words}"):
-        rf.System.from_dict(told)
+        rf.System.from_dict(description)
 
 
 def test_from_dataset_refuses_a_path():
@@ -296,9 +296,9 @@ def test_cap_exactly_as_wide_as_the_block_is_accepted():
     for width in ("1.99999 m", "1.999999999 m"):
         error = faults(block(), cap(width=width), soil())
         assert "narrower" in str(error)
-    told = str(faults(block(), cap(width="1.999999999 m"), soil()))
-    wide, building = re.search(r"is (\S+) m wide, narrower than the (\S+) m", told).groups()
-    assert wide != building, told
+    message = str(faults(block(), cap(width="1.999999999 m"), soil()))
+    wide, building = re.search(r"is (\S+) m wide, narrower than the (\S+) m", message).groups()
+    assert wide != building, message
 
 
 def test_a_single_fault_is_one_sentence():

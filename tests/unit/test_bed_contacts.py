@@ -1,4 +1,4 @@
-"""The contacts of both ends of a bed, in one whole number."""
+"""The contacts of both ends of a bed in one integer."""
 
 import itertools
 
@@ -24,7 +24,7 @@ def test_bed_interprets_contact_numbers(left, right):
     contact = both_contacts(left, right)
     assert BED.is_held(contact, True) == (left == DOWN)
     assert BED.is_held(contact, False) == (right == DOWN)
-    # a body rotates towards the side that is raised from the bed, and away from one that bears
+    # the sign of the tilt is the side of the raised end
     assert BED.tilt(contact) == right - left
     assert BED.waiting(contact, True) == BED.disturbed(contact) == contact
     assert BED.follows(contact, True) == both_contacts(RAISED, RAISED)

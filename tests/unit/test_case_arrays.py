@@ -1,4 +1,4 @@
-"""Numbers of many cases go through the code of one, and have the bits of each alone."""
+"""Arithmetic of many cases equals that of single cases bit for bit."""
 
 import math
 
@@ -46,8 +46,8 @@ def test_case_arithmetic_is_bit_identical_to_scalars(work):
     assert together.tobytes() == alone.tobytes()
 
 
-def course(x):
-    """Take ways that differ in their number of rounds, and one that fails."""
+def iterations_of(x):
+    """Compute with branches that differ in their number of iterations, one of which fails."""
     if x > 0.85:
         msg = "too large"
         raise ValueError(msg)
@@ -60,7 +60,7 @@ def course(x):
 def test_cases_are_split_at_differing_branches():
     found, rounds = np.full(400, np.nan), np.full(400, -1)
     for some, (values, count) in run_by_branches(
-        lambda some: course(CaseArray(X[some])), np.arange(400)
+        lambda some: iterations_of(CaseArray(X[some])), np.arange(400)
     ):
         assert len(some) >= case_arrays.MIN_CASES
         found[some], rounds[some] = values.values, count
@@ -68,7 +68,7 @@ def test_cases_are_split_at_differing_branches():
     assert (np.isnan(found) | (X <= 0.85)).all()
     assert np.isnan(found).sum() < (X > 0.85).sum() + 5 * case_arrays.MIN_CASES
     for k in np.flatnonzero(~np.isnan(found)).tolist():
-        assert (found[k], rounds[k]) == course(float(X[k]))
+        assert (found[k], rounds[k]) == iterations_of(float(X[k]))
 
 
 def test_comparisons_agree_or_raise_branches_differ():

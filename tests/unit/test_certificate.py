@@ -1,4 +1,4 @@
-"""Certificates: how sure a verdict is."""
+"""Certificates: how certain a verdict is."""
 
 import math
 import re
@@ -13,12 +13,12 @@ from unit.certified import (
     PADS,
     PULSE,
     SYSTEM,
+    artificial_run,
     certificate_of,
     certified,
     edge,
     falls,
-    planned,
-    pretended,
+    plan_of,
 )
 
 import rockframe as rf
@@ -65,13 +65,13 @@ def test_certification_does_not_change_the_run():
     ],
 )
 def test_the_margin_is_the_distance_to_the_boundary(off, side):
-    """Up to the resolution: the bisection of an interval of a geometric row."""
+    """Up to the resolution of a bisection within an interval of the geometric row."""
     scale = edge() / (1.0 + side * off)
     run = certified(PULSE.scaled(scale))
     assert bool(run.overturned) == (side < 0.0)
     found, flip = float(run.verdict_margin), float(run.verdict_flip_scale)
     assert off * (1.0 - 2.0 * RESOLUTION) <= found <= off
-    # the verdict does change there, and not at the margin
+    # the verdict changes there, and not at the margin
     assert falls(scale * flip) != bool(run.overturned)
     assert falls(scale * (1.0 + side * found)) == bool(run.overturned)
     assert abs(flip - 1.0) - found <= 1.01 * RESOLUTION * abs(flip - 1.0)
@@ -122,7 +122,7 @@ def test_parameters_that_change_the_verdict_are_counted():
 
 
 def test_sensitivity_counts_lowered_and_raised_peaks():
-    run, plan = pretended(lambda *_: False), planned()
+    run, plan = artificial_run(lambda *_: False), plan_of()
 
     def lower(system, plan):
         peak = 0.02 if system.parts.pads.to_dict()["frequency_ratio"] > 20.01 else 0.1001
@@ -144,13 +144,13 @@ def test_nudged_scenes_preserve_options():
         "gravity": "3.7 m/s^2",
     }
     system = rf.System(BLOCK, PADS, cap, soil, **options)
-    kept = {name: value for name, value in system.to_dict().items() if name != "parts"}
+    preserved = {name: value for name, value in system.to_dict().items() if name != "parts"}
     for words, scene_at in parameters(system.assembly):
-        assert kept.items() <= scene_at(1e-3).to_dict().items(), words
+        assert preserved.items() <= scene_at(1e-3).to_dict().items(), words
 
 
 def test_nudges_that_make_parts_incompatible_are_skipped():
-    """A cap as wide as the block can be no narrower, nor the block any wider."""
+    """A cap as wide as the block cannot be narrower, nor the block wider."""
     block = rf.Block(width="2 m", height="8 m", mass="50 t")
     cap = rf.CushionCap(width="2 m", height="0.5 m", mass="10 t")
     system = rf.System(block, cap, rf.WinklerSoil(stiffness="30 MPa", damping_ratio=0.1))
@@ -170,7 +170,7 @@ def test_certificate_does_not_repeat_warnings_of_the_scene():
 def test_certificate_counts_its_runs():
     made = []
     found = certificate_of(lambda _, plan: made.append(plan) or False)
-    assert found.runs == len(made) - 1  # the first is the run itself
+    assert found.runs == len(made) - 1  # the first is the certified run
 
 
 @pytest.mark.parametrize(
@@ -203,7 +203,7 @@ def test_a_margin_has_no_floor(edge):
 
 
 def test_overturning_island_near_high_peaks_is_found():
-    """An island of overturning between two scales of the first row, told by the peaks about it."""
+    """An island of overturning between two scales of the first row, indicated by nearby peaks."""
     middle, half = 0.3172, 0.0008
 
     def run(_, plan):
@@ -212,14 +212,14 @@ def test_overturning_island_near_high_peaks_is_found():
         fell = left < 0.0
         return RunSummary(fell, 0.1, (1.0, 1.0) if fell else (5.0 * left,), 1.0, 0, 0.001)
 
-    plan = planned()
+    plan = plan_of()
     found = certify(SYSTEM.assembly, plan, run(SYSTEM.assembly, plan), rf.Certification(), run)
     assert found.margin == pytest.approx(middle - half, rel=2.0 * RESOLUTION)
     assert found.margin <= middle - half
 
 
-def certified_on_courses_of_their_own(**options):
-    """Certify runs that all stand, each on a course of its own beyond a certain scale."""
+def certified_on_diverging_courses(**options):
+    """Certify standing runs, each of which takes a different course beyond a certain scale."""
     rng = np.random.default_rng(0)
 
     def run(_, plan):
@@ -227,12 +227,12 @@ def certified_on_courses_of_their_own(**options):
         course = (1.0, rng.uniform(0.0, 1.0) if off > 0.1 else 0.5)
         return RunSummary(False, 0.1, (0.5,), math.nan, 0, 0.001, course)
 
-    plan, asked = planned(), rf.Certification(**options)
-    return certify(SYSTEM.assembly, plan, run(SYSTEM.assembly, plan), asked, run)
+    plan, settings = plan_of(), rf.Certification(**options)
+    return certify(SYSTEM.assembly, plan, run(SYSTEM.assembly, plan), settings, run)
 
 
 def test_margin_ends_where_the_course_is_unresolved():
-    found = certified_on_courses_of_their_own()
+    found = certified_on_diverging_courses()
     assert 0.09 < found.margin < 0.12
     assert math.isnan(found.flip)
     assert found.robust
@@ -242,7 +242,7 @@ def test_margin_ends_where_the_course_is_unresolved():
 
 @pytest.mark.long
 def test_more_runs_do_not_reduce_the_margin():
-    found, more = certified_on_courses_of_their_own(), certified_on_courses_of_their_own(runs=400)
+    found, more = certified_on_diverging_courses(), certified_on_diverging_courses(runs=400)
     assert 200 < more.runs <= 400
     assert more.margin >= found.margin
 
@@ -255,11 +255,11 @@ def test_unresolved_course_near_the_run_reports_number_of_runs():
         course = (1.0, rng.uniform(0.0, 1.0) if off > 0.004 else 0.5)
         return RunSummary(False, 0.1, (0.5,), math.nan, 0, 0.001, course)
 
-    plan = planned()
+    plan = plan_of()
     found = certify(SYSTEM.assembly, plan, run(SYSTEM.assembly, plan), rf.Certification(), run)
     assert found.margin < 0.01
-    told = "Near the boundary: the body stands, but 200 runs were too few to resolve"
-    assert told in found.sentence
+    sentence = "Near the boundary: the body stands, but 200 runs were too few to resolve"
+    assert sentence in found.sentence
 
 
 def test_uncertain_peak_near_overturning_is_not_converged():
@@ -267,14 +267,14 @@ def test_uncertain_peak_near_overturning_is_not_converged():
         left = 0.01 if plan.accuracy.rtol > 1e-5 else 0.004
         return RunSummary(False, 0.1, (left,), math.nan, 0, 0.001)
 
-    plan = planned()
+    plan = plan_of()
     found = certify(SYSTEM.assembly, plan, run(SYSTEM.assembly, plan), rf.Certification(), run)
     assert not found.converged
     assert "its peak rotation is uncertain by" in found.sentence
 
 
 def test_parameters_are_also_varied_within_the_nudge():
-    """A band of overturning well inside, with the nudge itself beyond it."""
+    """A band of overturning inside the nudge, which itself lies beyond it."""
     found = certificate_of(
         lambda system, _: 20.009 < system.parts.pads.to_dict()["frequency_ratio"] < 20.011
     )
@@ -284,7 +284,7 @@ def test_parameters_are_also_varied_within_the_nudge():
 
 @pytest.mark.parametrize(("lower", "upper"), [(0.98, 1.027), (0.973, 1.02)])
 def test_margin_uses_the_nearer_of_two_flips(lower, upper):
-    """Both within one interval of the geometric row."""
+    """Both flips lie within one interval of the geometric row."""
     found = certificate_of(lambda _, plan: not lower < plan.motion.si.peak / PULSE.si.peak < upper)
     assert 0.02 * (1.0 - 2.0 * RESOLUTION) <= found.margin <= 0.02
 

@@ -1,4 +1,4 @@
-"""What a certificate says, and of which runs it can be made."""
+"""Sentences of certificates, and runs that can be certified."""
 
 import itertools
 import math
@@ -18,7 +18,7 @@ from unit.certified import (
     certificate_of,
     certified,
     edge,
-    planned,
+    plan_of,
 )
 
 import rockframe as rf
@@ -43,17 +43,17 @@ from rockframe.solve.accuracy import accuracy_of
 
 
 def combinations():
-    """Return certificates of all that may be found, in the runs of either sense."""
+    """Return certificates of all possible findings, for runs of either verdict."""
     stands, falls = RunSummary(False, 0.1, (0.5,)), RunSummary(True, 0.2, (1.0, 1.0), 1.0, 1)
     back, lost = RunSummary(False, 0.3, (0.5, 0.5)), RunSummary(None, 0.1)
     same = dict.fromkeys((-0.1, 0.1), stands)
     for course, base, moving in itertools.product(
         ("stop", "continue"), (stands, falls, back), (False, True)
     ):
-        plan = replace(planned(), stop_at_overturning=course == "stop")
+        plan = replace(plan_of(), stop_at_overturning=course == "stop")
         other = stands if base.overturned else falls
-        near_it = replace(base, clearances=tuple(0.5 * one for one in base.clearances))
-        finer = [base, other, lost, near_it]
+        near_flip = replace(base, clearances=tuple(0.5 * one for one in base.clearances))
+        finer = [base, other, lost, near_flip]
         nudged = [
             Scan(1e-3, None, None, followed=True, tried=same),
             Scan(5e-4, 5e-4, other, followed=True, tried=same),
@@ -71,15 +71,15 @@ def combinations():
                 ended = None if flip is None else other
                 along.append(Scan(margin, signed, ended, followed=followed, tried=same))
         for one, parameter, scaled in itertools.product(finer, nudged, along):
-            for wanted in (rf.Certification(), rf.Certification(nudge=0.1, reach=0.5)):
+            for settings in (rf.Certification(), rf.Certification(nudge=0.1, reach=0.5)):
                 yield Certificate(
-                    wanted, plan, replace(base, in_motion=moving), [("means", one)],
+                    settings, plan, replace(base, in_motion=moving), [("means", one)],
                     [("parameter", parameter)], scaled,
                 )  # fmt: skip
 
 
 def test_certificate_sentence_matches_its_numbers():
-    """Whatever was found: the flip that is known, the margin, and whether the verdict is sure."""
+    """For all findings: the known flip, the margin, and whether the verdict is certain."""
     seen = set()
     for found in combinations():
         text, values, attributes = found.sentence, found.values(), found.attributes()
@@ -88,10 +88,10 @@ def test_certificate_sentence_matches_its_numbers():
         assert attributes["certificate"] == text
         scaled = f"scaled {'up' if flip > 1.0 else 'down'} by {100.0 * abs(flip - 1.0):.3g} %"
         nearest = f"with another verdict is {flip:.6g}."
-        # the flip is said once, wherever it is known, and none where it is not
-        numbers_in = (scaled in text) + (nearest in text)
-        assert numbers_in == (0 if math.isnan(flip) else 1), text
-        assert ("another verdict is" in text) + ("scaled" in text) == numbers_in, text
+        # a known flip is stated once, an unknown one never
+        count = (scaled in text) + (nearest in text)
+        assert count == (0 if math.isnan(flip) else 1), text
+        assert ("another verdict is" in text) + ("scaled" in text) == count, text
         doubt = text.startswith("Near the boundary: ")
         assert doubt or (found.converged and found.robust), text
         assert doubt != (" also with " in text)
@@ -115,20 +115,20 @@ def test_certificate_sentence_matches_its_numbers():
 def test_reach_smaller_than_the_nudge_is_sufficient():
     same = {scale: RunSummary(False, 0.1, (0.5,)) for scale in (-0.01, 0.01)}
     along = Scan(0.01, None, None, followed=True, tried=same)
-    wanted = rf.Certification(nudge=0.1, reach=0.01)
-    found = Certificate(wanted, planned(), same[0.01], along=along)
+    settings = rf.Certification(nudge=0.1, reach=0.01)
+    found = Certificate(settings, plan_of(), same[0.01], along=along)
     assert found.robust
     assert found.sentence.startswith("The body stands also with")
 
 
 def test_continued_run_is_judged_by_falling_flat():
-    """Under a pulse that brings the block back from beyond the angle, up to 3.735 of it."""
+    """Under a pulse that returns the block from up to 3.735 times the overturning angle."""
     system = rf.System(rf.Block(width="1 m", height="5 m", mass="10 t"))
     pulse = rf.GroundMotion.sine_pulse("2.5 m/s^2", "1 Hz").scaled(3.70)
     run = system.simulate(
         pulse, free_vibration="10 s", overturning="continue", certify=True, outputs=None
     )
-    assert bool(run.overturned)  # it passed the angle
+    assert bool(run.overturned)  # it passed the overturning angle
     assert verdict_of(run) is False
     flip = float(run.verdict_flip_scale)
     assert flip == pytest.approx(3.736 / 3.70, abs=1e-3)
@@ -201,7 +201,7 @@ def test_sensitivity_equals_change_under_nudged_parameters():
                 other = rf.System(*parts).simulate(PULSE, free_vibration="4 s", outputs=None)
                 peaks.append(float(other.peak_rotation))
     expected = max(abs(peak - peaks[0]) for peak in peaks)
-    # or a little more, somewhere inside the nudge
+    # or slightly more, inside the nudge
     assert float(run.peak_sensitivity) >= expected * (1.0 - 1e-12)
     assert float(run.peak_sensitivity) == pytest.approx(expected, rel=0.05)
 
@@ -216,7 +216,7 @@ def test_initial_state_is_scaled_without_a_motion():
 
 @pytest.mark.parametrize("share", [0.0, 0.3])
 def test_margin_of_an_initial_state_follows_from_energy(share):
-    """A rigid block overturns if it can lift its centre of mass above the corner."""
+    """A rigid block overturns if its energy lifts its centre of mass above the corner."""
     block, edge = rf.Block.from_size(radius="2 m", slenderness=4, mass="1 t"), 1.1
     angle = block.si.overturning_angle
     rate = math.sqrt(1.5 * 9.80665 / 2.0 * (1.0 - math.cos((1.0 - share) * angle)))
@@ -263,10 +263,12 @@ def test_continued_run_is_compared_with_continued_runs():
 def test_barely_sufficient_substeps_are_certified():
     pads = rf.TwoSpringSupport(frequency_ratio=324.57, damping_ratio=0.1)
     system = rf.System(BLOCK, pads)
-    given = rf.Accuracy(substeps=4)
+    accuracy = rf.Accuracy(substeps=4)
     with pytest.raises(SolverError, match="too few"):
-        rf.System(BLOCK, pads.with_scaled("frequency_ratio", 1.001)).simulate(PULSE, accuracy=given)
-    run = certified(system=system, accuracy=given)
+        rf.System(BLOCK, pads.with_scaled("frequency_ratio", 1.001)).simulate(
+            PULSE, accuracy=accuracy
+        )
+    run = certified(system=system, accuracy=accuracy)
     assert "larger or smaller" in run.attrs["certificate"]
 
 
@@ -294,10 +296,10 @@ def test_every_scene_can_be_certified(parts, coupling, tmp_path):
         xr.testing.assert_identical(stored[list(NAMES)].drop_attrs(), run[list(NAMES)].drop_attrs())
 
 
-@pytest.mark.parametrize("given", [1, "yes", None, 0.01])
-def test_invalid_certify_option_is_refused(given):
+@pytest.mark.parametrize("value", [1, "yes", None, 0.01])
+def test_invalid_certify_option_is_refused(value):
     with pytest.raises(ComponentError, match="must be True, False, 'proved' or a Certification"):
-        SYSTEM.simulate(PULSE, certify=given)
+        SYSTEM.simulate(PULSE, certify=value)
 
 
 @pytest.mark.parametrize(
@@ -360,7 +362,7 @@ def test_shorter_step_settings_take_more_steps(accuracy):
 
 
 def test_verdict_is_confirmed_only_if_all_clearances_agree():
-    """Of a body that overturns: its rate at that angle, and the time that was left."""
+    """Clearances of an overturning body: its rate at that angle, and the time left."""
     falls = RunSummary(overturned=True, peak=0.2, clearances=(1.0, 0.5), time=4.0, direction=1)
     for clearances, sure in (
         ((1.1, 0.6), True),
@@ -374,7 +376,7 @@ def test_verdict_is_confirmed_only_if_all_clearances_agree():
 
 @pytest.mark.parametrize("sign", [-1.0, 1.0])
 def test_scan_reports_the_nearest_flip_of_both_sides(sign):
-    """Both lie between the same changes of the first row."""
+    """Both flips lie between the same changes of the first row."""
     near, far = 0.12, 0.17
 
     def look(change):

@@ -1,4 +1,4 @@
-"""A run that is certified by a proof, in its dataset, on the command line and in the report."""
+"""A run certified by a proof: its dataset, its command and its report."""
 
 import re
 from dataclasses import replace
@@ -49,10 +49,10 @@ def test_run_ending_before_proved_overturning_warns(system):
 
 
 def test_contradiction_of_run_and_proof_warns(system, monkeypatch):
-    given = proving.prove_run
+    original = proving.prove_run
 
     def wrong(*arguments, **options):
-        return replace(given(*arguments, **options), verdict="safe for ever")
+        return replace(original(*arguments, **options), verdict="safe for ever")
 
     monkeypatch.setattr("rockframe.simulation.run.prove_run", wrong)
     with pytest.warns(SolverWarning, match="the run is wrong, or the proof is"):
@@ -71,11 +71,11 @@ def test_contradiction_of_run_and_proof_warns(system, monkeypatch):
     ],
 )
 def test_different_overturning_time_warns(base, peak, away, monkeypatch):
-    """The verdict is proved, but the run is of another course."""
-    given = proving.prove_run
+    """The verdict is proved, but the run takes another course."""
+    original = proving.prove_run
 
     def later(*arguments, **options):
-        proof = given(*arguments, **options)
+        proof = original(*arguments, **options)
         return replace(proof, earliest=proof.earliest + away, latest=proof.latest + away)
 
     standing = rf.System(rf.Block(width="1 m", height="5 m", mass="10 t"), base)

@@ -1,4 +1,4 @@
-"""Checks by codes: worked numbers, the motion beside them, and their pages."""
+"""Checks by codes: worked examples, comparisons with motions, and their pages."""
 
 import math
 
@@ -43,12 +43,12 @@ def test_circolare_reproduces_worked_example_of_a_wall():
 
 
 def test_damage_limit_state_compares_activation_acceleration():
-    for acceleration, stands in ((0.8, True), (0.83, False)):
+    for acceleration, passes in ((0.8, True), (0.83, False)):
         check = rf.codes.circolare_2019(
             LOW, spectrum(0.05, acceleration), confidence_factor=1, limit_state="SLD",
             elastic_period="0.5 s",
         )  # fmt: skip
-        assert check.passed == {"kinematic, SLD": stands}
+        assert check.passed == {"kinematic, SLD": passes}
         assert check.value("S_e(T_0)") == pytest.approx(acceleration)
     motions = rf.codes.circolare_2019(LOW, PULSES, limit_state="SLD", elastic_period="0.5 s")
     found = rf.response_spectrum(PULSES, ["0.5 s"], 0.05).pseudo_spectral_acceleration
@@ -56,14 +56,14 @@ def test_damage_limit_state_compares_activation_acceleration():
 
 
 def test_circolare_includes_overburden_mass():
-    """By hand: a floor of 2 t at the top, 0.1 m from the face to which the wall falls."""
+    """By hand: a floor of 2 t at the top, 0.1 m from the face towards which the wall falls."""
     floor = rf.Load(at=("-0.15 m", "6 m"), moving_mass="2 t")
     system = rf.System(WALL, rf.RigidGround(), floor, gravity="9.81 m/s^2")
     check = rf.codes.circolare_2019(system, spectrum(), confidence_factor=1)
-    beside, level, square = 5.7 * 0.25 + 2 * 0.1, 5.7 * 3.0 + 2 * 6.0, 5.7 * 9.0 + 2 * 36.0
-    assert check.value("alpha_0") == pytest.approx(beside / level)
+    moment, level, square = 5.7 * 0.25 + 2 * 0.1, 5.7 * 3.0 + 2 * 6.0, 5.7 * 9.0 + 2 * 36.0
+    assert check.value("alpha_0") == pytest.approx(moment / level)
     assert check.value("e*") == pytest.approx(level**2 / (7.7 * square))
-    assert check.value("d_0") == pytest.approx(beside * square / level**2)
+    assert check.value("d_0") == pytest.approx(moment * square / level**2)
     with pytest.raises(ComponentError, match="which may carry loads that are masses"):
         rf.codes.circolare_2019(
             rf.System(WALL, rf.Load(at=("0 m", "6 m"), vertical="1 kN")), spectrum()
@@ -73,7 +73,7 @@ def test_circolare_includes_overburden_mass():
 def test_circolare_considers_the_weaker_or_free_side():
     eccentric = WALL.replace(eccentricity="0.05 m")
     free = rf.codes.circolare_2019(rf.System(eccentric), spectrum())
-    assert free.value("d_0") == pytest.approx(0.2)  # the weaker side, to the right
+    assert free.value("d_0") == pytest.approx(0.2)  # to the right, the weaker side
     before = rf.System(eccentric, rf.RearWall(side="right"))
     assert rf.codes.circolare_2019(before, spectrum()).value("d_0") == pytest.approx(0.3)
 
@@ -90,7 +90,7 @@ def test_circolare_with_motions_matches_simulated_displacements():
             assert found == pytest.approx(0.25)
         else:
             shown = float(run.peak_point_horizontal_displacement[0])
-            assert found == pytest.approx(shown, rel=1e-6)  # as peaks are sought
+            assert found == pytest.approx(shown, rel=1e-6)  # the accuracy of peaks
         moved.append(found)
     assert check.value("mean of d") == pytest.approx(np.mean(moved))
     assert 0.0 < min(moved) < max(moved) == 0.25
@@ -107,7 +107,7 @@ def test_circolare_with_motions_matches_simulated_displacements():
 
 
 def test_displacement_to_the_stronger_side_is_not_capped():
-    """It was counted as d_0 of the weaker side at most, within which the wall was said to be."""
+    """The peak was once limited to d_0 of the weaker side, so that the wall seemed to pass."""
     eccentric = WALL.replace(eccentricity="0.15 m")
     system = rf.System(eccentric, rf.RigidGround(restitution=0.05))
     pulse = rf.GroundMotion.type_a_pulse("1.5 m/s", "1.5 s")
@@ -123,7 +123,7 @@ def test_displacement_to_the_stronger_side_is_not_capped():
 
 
 @pytest.mark.parametrize(
-    ("given", "words"),
+    ("scene", "words"),
     [
         ((rf.System(WALL), spectrum(0.05)), "must be of a damping ratio of 0.08, got 0.05"),
         (("wall.toml", spectrum()), "system needs a System"),
@@ -135,9 +135,9 @@ def test_displacement_to_the_stronger_side_is_not_capped():
         ),
     ],
 )
-def test_scenes_that_cannot_be_checked_are_refused(given, words):
+def test_scenes_that_cannot_be_checked_are_refused(scene, words):
     with pytest.raises(ComponentError, match=words):
-        rf.codes.circolare_2019(*given)
+        rf.codes.circolare_2019(*scene)
 
 
 def test_invalid_check_arguments_are_refused():
@@ -161,7 +161,7 @@ def test_asce_check_of_a_component_matches_formulas():
     assert check.value("F_p") == pytest.approx(force)
     assert check.value("F_v") == pytest.approx(0.2 * 1.2 * weight)
     assert check.value("M_OT") == pytest.approx(force * 0.9)
-    lifted = 0.9 * weight - 0.2 * 1.2 * weight  # by the vertical force at the same time
+    lifted = 0.9 * weight - 0.2 * 1.2 * weight  # by the simultaneous vertical force
     assert check.value("M_R") == pytest.approx(0.9 * weight * 0.3)
     assert check.value("M_R, with F_v") == pytest.approx(lifted * 0.3)
     assert check.value("M_anchors") == pytest.approx(force * 0.9 - lifted * 0.3)
@@ -179,7 +179,7 @@ def test_asce_check_of_a_component_matches_formulas():
     firm = rf.codes.asce_7_22(squat, spectral_acceleration=0.5)
     assert firm.passed == {"tipping": True}
     assert firm.value("M_anchors") == 0.0
-    # factors that are not given are one
+    # omitted factors are one
     assert firm.value("F_p, formula") == pytest.approx(0.4 * 0.5 * firm.value("W_p"), rel=1e-12)
     needed = firm.value("mu, with F_v")
     enough = rf.codes.asce_7_22(squat, spectral_acceleration=0.5, friction=needed)

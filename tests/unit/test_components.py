@@ -1,4 +1,4 @@
-"""Components as values: what they hold, what they refuse, the way to text and back."""
+"""Components as values: contents, refusals, representations."""
 
 import copy
 import inspect
@@ -152,7 +152,7 @@ class TestEveryComponent:
 
 
 POINTS = {"on": ("-1 m", "3 m"), "to": ("-2 m", "3 m")}
-GIVEN = (
+REPLACEABLE = (
     *(one for name, one in EXAMPLES.items() if name not in frames.EXAMPLES),
     rf.Block(**SIZE, centre_of_mass=("3 m", "5 cm")),
     rf.FrameEquivalent(**SIZE, shape_factor=2.5),
@@ -179,22 +179,22 @@ def test_every_component_class_is_tested():
         for kind in registered_classes().values()
         if kind.__module__.startswith("rockframe.components")
     }
-    assert own - {Link, PointLink} == {type(one) for one in GIVEN}
+    assert own - {Link, PointLink} == {type(one) for one in REPLACEABLE}
 
 
-@pytest.mark.parametrize("given", GIVEN, ids=lambda one: type(one).__name__)
-def test_replace_accepts_own_property_values(given):
-    for name in inspect.signature(type(given)).parameters:
-        value = getattr(given, name)
+@pytest.mark.parametrize("component", REPLACEABLE, ids=lambda one: type(one).__name__)
+def test_replace_accepts_own_property_values(component):
+    for name in inspect.signature(type(component)).parameters:
+        value = getattr(component, name)
         if value is not None:
-            again = getattr(given.replace(**{name: value}), name)
-            if isinstance(value, pint.Quantity):  # derived from others, some lose a digit
+            again = getattr(component.replace(**{name: value}), name)
+            if isinstance(value, pint.Quantity):  # derived quantities may lose a digit
                 np.testing.assert_allclose(again.magnitude, value.magnitude, rtol=1e-14)
                 again, value = again.units, value.units
             assert repr(again) == repr(value)
 
 
-# the way to text and back ----------------------------------------------------------------
+# text representations ----------------------------------------------------------------
 
 _size = st.floats(1e-3, 1e4)
 _ratio = st.floats(1e-3, 1e3)
@@ -321,7 +321,7 @@ def test_a_shape_factor_must_be_a_positive_number(bad):
 
 
 @pytest.mark.parametrize(
-    ("told", "least", "possible"),
+    ("arguments", "least", "possible"),
     [
         ({"shape_factor": 0.2}, "1 or more", 1),
         ({"inertia": "1e6 kg*m^2"}, "1 or more", "1250 kg*m^2"),
@@ -330,29 +330,29 @@ def test_a_shape_factor_must_be_a_positive_number(bad):
         ({"inertia": "1161 kg*m^2", "eccentricity": "0.3 m"}, "1.078 or more", "1160 kg*m^2"),
     ],
 )
-def test_unphysical_inertia_warns_and_is_used(told, least, possible):
+def test_unphysical_inertia_warns_and_is_used(arguments, least, possible):
     size = {"width": "1 m", "height": "2 m", "mass": "1 t"}
     with pytest.warns(ModelWarning, match=rf"Block: .*not physical.*{least}") as caught:
-        block = rf.Block(**size, **told)
+        block = rf.Block(**size, **arguments)
     assert len(caught) == 1
     assert caught[0].filename == __file__
     assert "corner" not in str(caught[0].message)
     assert pickle.loads(pickle.dumps(block)) == block  # noqa: S301
-    name = next(iter(told))
-    rf.Block(**size, **told | {name: possible})
+    name = next(iter(arguments))
+    rf.Block(**size, **arguments | {name: possible})
 
 
 def test_inertia_about_a_corner_warns():
     size = {"width": "1 m", "height": "2 m", "mass": "1 t"}
-    beside = {"centre_height": "0.9 m", "eccentricity": "0.1 m"}
-    for told in (
+    position = {"centre_height": "0.9 m", "eccentricity": "0.1 m"}
+    for arguments in (
         {"inertia": "1666.67 kg*m^2"},
         {"shape_factor": 0.745},
-        {"inertia": f"{1000 * (5 / 12 + 0.81 + 0.36)!r} kg*m^2", **beside},
-        {"inertia": f"{1000 * (5 / 12 + 0.81 + 0.16)!r} kg*m^2", **beside},
+        {"inertia": f"{1000 * (5 / 12 + 0.81 + 0.36)!r} kg*m^2", **position},
+        {"inertia": f"{1000 * (5 / 12 + 0.81 + 0.16)!r} kg*m^2", **position},
     ):
         with pytest.warns(ModelWarning, match="not physical.*solid rectangle about a corner"):
-            rf.Block(**size, **told)
+            rf.Block(**size, **arguments)
 
 
 DRUM = rf.Block.cylinder(diameter="0.5 m", height="2 m", mass="400 kg")
@@ -522,7 +522,7 @@ class TestRestitution:
             rf.System(block, maker(greatest + 1e-6))
         assert len(caught) == 1
         assert caught[0].filename == __file__
-        # warnings are errors here: these must give none
+        # warnings are errors here
         rf.System(block, maker(greatest))
         rf.System(block, maker(greatest - 1e-6))
         rf.System(block, maker(None))
@@ -533,8 +533,8 @@ def test_pads_need_exactly_one_parameter_of_each_pair():
     second = {"damping_ratio": 0.1, "damping": "80 kN*s/m"}
     names = list(itertools.chain(first, second))
     for chosen in itertools.product([False, True], repeat=4):
-        given_names = [name for name, is_in in zip(names, chosen, strict=True) if is_in]
-        arguments = {name: {**first, **second}[name] for name in given_names}
+        declared_names = [name for name, is_in in zip(names, chosen, strict=True) if is_in]
+        arguments = {name: {**first, **second}[name] for name in declared_names}
         if chosen[0] != chosen[1] and chosen[2] != chosen[3]:
             rf.TwoSpringSupport(**arguments)
             continue
@@ -570,12 +570,12 @@ class TestCentreOfMass:
 
     def test_defaults_to_the_middle(self):
         block = rf.Block(**self.SIZE)
-        told = rf.Block(**self.SIZE, centre_of_mass=("1 m", "0 m"))
-        assert vars(told.si) == vars(block.si)
+        explicit = rf.Block(**self.SIZE, centre_of_mass=("1 m", "0 m"))
+        assert vars(explicit.si) == vars(block.si)
         assert [each.m_as("m") for each in block.centre_of_mass] == [1.0, 0.0]
 
     def test_eccentric_block_has_different_angles_and_restitutions(self):
-        """Angular momentum about the corner that lands, :eq:`eq-eccentric-impact`."""
+        """Angular momentum about the landing corner, :eq:`eq-eccentric-impact`."""
         block = rf.Block(**self.SIZE, inertia="150 kg*m^2", centre_of_mass=("0.7 m", "0.05 m"))
         body = rf.System(block).setting.body
         left, right = -0.35, 0.25
@@ -600,7 +600,7 @@ class TestCentreOfMass:
         assert block.replace(eccentricity="0 m").centre_height == block.centre_height
 
     @pytest.mark.parametrize(
-        ("given", "words"),
+        ("arguments", "words"),
         [
             ({"centre_of_mass": ("2.1 m", "0 m")}, r"is not within 2 m of height and 0\.3 m"),
             ({"centre_of_mass": ("1 m", "-0.3 m")}, r"is not within 2 m of height and 0\.3 m"),
@@ -609,9 +609,9 @@ class TestCentreOfMass:
             ({"centre_of_mass": ("1 m", "0 m"), "eccentricity": "0 m"}, "give it alone"),
         ],
     )
-    def test_invalid_positions_are_refused(self, given, words):
+    def test_invalid_positions_are_refused(self, arguments, words):
         with pytest.raises(ComponentError, match=words):
-            rf.Block(**self.SIZE, **given)
+            rf.Block(**self.SIZE, **arguments)
 
     def test_large_lean_at_rest_warns(self):
         block = rf.Block(**self.SIZE, centre_of_mass=("1 m", "0.1 m"))

@@ -1,4 +1,4 @@
-"""Contacts of corners with their pads, switched by hand: what one corner does to the other."""
+"""Contacts of corners with their pads: effects of switching one corner on the other."""
 
 import numpy as np
 import pytest
@@ -38,12 +38,12 @@ LEFT_GUARDS, RIGHT_GUARDS = 0, CORNER_GUARDS
 
 
 def state_with(*, right_force):
-    """Return a state with the left corner up, and the right one at a force of its pad's law."""
+    """Return a state with the left corner lifted and a given force on the right pad."""
     state = np.zeros(2 * BODY_DOF)
     state[ROTATION] = 0.001
     level = BODY.base_line_at(SYSTEM.state_of(0, state)).right
     state[VERTICAL] = 0.5 * PADS.rest - level
-    # the force by the speed alone, without rotation
+    # the force results from the velocity alone, without rotation
     speed = (PADS.law.stiffness * 0.5 * PADS.rest - right_force) / PADS.law.damping
     state[BODY_DOF + VERTICAL] = speed
     return state
@@ -69,7 +69,7 @@ def switched(left, right, guard, state):
 
 @pytest.mark.parametrize("contact", [LEAVING, ENGAGING])
 def test_leaving_corner_reclassifies_the_waiting_corner_by_force(contact):
-    """No point is held any more: nothing of the left one's own re-pinning is left to wait for."""
+    """In flight no corner is held, and no re-pinning is pending."""
     new = switched(contact, TOUCHING, RIGHT_GUARDS + LEAVE, state_with(right_force=0.0))
     assert corners_in(new) == (RELAXING, TOUCHING)
     assert SYSTEM.part.is_free(SYSTEM.part.mode_of(new))

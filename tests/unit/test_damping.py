@@ -1,4 +1,4 @@
-"""The damping ratio of a base, and where its warning points."""
+"""The damping ratio of a base, and the location of its warning."""
 
 import pickle
 import warnings
@@ -26,13 +26,13 @@ def test_damping_ratio_above_one_warns():
     assert pads.si.damping_ratio == 10.0
     with pytest.warns(ModelWarning, match=r"WinklerSoil: damping_ratio = 1\.5 is 150 % of"):
         rf.WinklerSoil(stiffness="9 MPa", damping_ratio="150 %")
-    # what pytest would turn into errors: neither at 1 nor a second time
+    # no warning at 1, and none a second time: pytest would raise it
     rf.TwoSpringSupport(frequency_ratio=20, damping_ratio=1)
     assert pickle.loads(pickle.dumps(pads)) == pads  # noqa: S301
 
 
 def test_soil_damping_follows_from_its_ratio():
-    """c0 over the base is 2 xi sqrt(k m), of the vertical motion of all that stands on it."""
+    """c0 over the base is 2 xi sqrt(k m), for the vertical motion of the total mass."""
     block = rf.Block(width="4 m", height="10 m", mass="100 t")
     cap = rf.CushionCap(width="5 m", height="1 m", mass="60 t")
     for parts, width, mass in (((), 4.0, 1e5), ((cap,), 5.0, 1.6e5)):

@@ -1,4 +1,4 @@
-"""What a system says about itself: its model, its numbers and its limits."""
+"""Descriptions of systems: model, numbers and limits."""
 
 import math
 import re
@@ -53,7 +53,7 @@ class TestDescription:
 
     @pytest.mark.parametrize("base", [pads, soil])
     def test_rocking_damping_ratio_of_an_eccentric_base(self, base):
-        """Springs and dashpots have the same levers, about the foot of the centre of mass."""
+        """Springs and dashpots have the same levers about the foot of the centre of mass."""
         part, e = base(), 0.1
         eccentric = block(centre_of_mass=("4 m", f"{e} m"))
         support = rf.System(eccentric, part).setting.support
@@ -68,8 +68,8 @@ class TestDescription:
         rate = math.sqrt((springs - 5e4 * 9.80665 * 4.0) / inertia)
         text = rf.System(eccentric, part).describe()
         ratio = dashpots / (2.0 * inertia * rate)
-        told = re.search(r"omega_r = (\S+) rad/s .*?damping ratio (\S+)", text, re.DOTALL)
-        assert told.groups() == (f"{rate:.6g}", f"{ratio:.6g}")
+        match = re.search(r"omega_r = (\S+) rad/s .*?damping ratio (\S+)", text, re.DOTALL)
+        assert match.groups() == (f"{rate:.6g}", f"{ratio:.6g}")
 
     def test_describes_rigid_ground(self):
         text = rf.System(block()).describe()
@@ -193,7 +193,7 @@ class TestDescription:
             small = assembled(name, rotation="small").describe()
             assert "small rotation" in small
             assert small != assembled(name).describe()
-            if len(parts) < 3 and "Winkler" not in name:  # Eq. (18) is named as that of small ones
+            if len(parts) < 3 and "Winkler" not in name:  # Eq. (18) is cited for small rotations
                 assert "small rotation" not in assembled(name).describe()
 
     def test_states_gravity(self):
@@ -232,7 +232,7 @@ class TestDescription:
             (start,) = starts
             for line in numbers:
                 assert line[start] != " ", line
-                if line not in names:  # a line that goes on stands below what it goes on from
+                if line not in names:  # a continued line is indented below its beginning
                     assert not line[:start].strip()
 
     def test_is_plain_text(self):

@@ -1,4 +1,4 @@
-"""Elastic walls on all bases: against an equation written by hand, limits, energy, mirror."""
+"""Elastic walls on all bases: an independent equation, limits, energy, symmetry."""
 
 import math
 import re
@@ -52,7 +52,7 @@ def test_rocking_against_a_wall_matches_reference_solution():
     """Housner's block whose upper left corner meets a spring at a gap."""
     b, h, mass, stiffness, gap, gravity = 0.5, 2.0, 4000.0, 4e5, 0.01, 9.80665
     radius, theta = math.hypot(b, h), math.atan2(b, h)
-    inertia, kept = 4.0 / 3.0 * mass * radius**2, 1.0 - 1.5 * math.sin(theta) ** 2
+    inertia, rebound = 4.0 / 3.0 * mass * radius**2, 1.0 - 1.5 * math.sin(theta) ** 2
 
     def slope(_, z, side):
         pressed = max(-2.0 * h * math.sin(z[0]) - gap, 0.0) if side < 0.0 else 0.0
@@ -73,7 +73,7 @@ def test_rocking_against_a_wall_matches_reference_solution():
         inside = (times >= now) & (times <= run.t[-1])
         found[inside] = run.sol(times[inside])[0]
         now, side = run.t[-1], -side
-        state = np.array([side * 1e-16, kept * run.y[1, -1]])
+        state = np.array([side * 1e-16, rebound * run.y[1, -1]])
     wall = rf.RearWall(side="left", stiffness=f"{stiffness} N/m", gap=f"{gap} m")
     ours = rf.System(BLOCK, wall).simulate(
         initial=rf.InitialState(rotation="0.1 rad"), duration="1.6 s", output_step="0.01 s",
@@ -85,16 +85,16 @@ def test_rocking_against_a_wall_matches_reference_solution():
 
 
 @pytest.mark.parametrize(
-    ("given", "share"),
+    ("arguments", "share"),
     [
         ({}, 0.411765),  # 1 - 1.5 cos^2 theta, of the wall alone
         ({"restitution": "newton", "wall_restitution": 0.3}, 0.3),
         ({"restitution": -0.6}, 0.6),
     ],
 )
-def test_suggested_elastic_wall_has_the_rebound_of_the_rigid_wall(given, share):
+def test_suggested_elastic_wall_has_the_rebound_of_the_rigid_wall(arguments, share):
     pads = rf.TwoSpringSupport(frequency_ratio=10, damping_ratio=0.05)
-    stiff = rf.RearWall(**given)
+    stiff = rf.RearWall(**arguments)
     with pytest.raises(AssemblyError, match="takes no impulse") as refused:
         rf.System(BLOCK, pads, stiff)
     stiffness, damping = re.findall(r"'([^']*) N", str(refused.value))
@@ -116,15 +116,15 @@ def test_wall_with_zero_restitution_has_critical_damping():
 
 
 @pytest.mark.parametrize(
-    ("given", "words"),
+    ("arguments", "words"),
     [
         ({"gap": "1 mm"}, "give a stiffness"),
         ({"stiffness": "1 MN/m", "restitution": -0.3}, "not both"),
     ],
 )
-def test_invalid_elastic_wall_is_refused(given, words):
+def test_invalid_elastic_wall_is_refused(arguments, words):
     with pytest.raises(ComponentError, match=words):
-        rf.RearWall(**given)
+        rf.RearWall(**arguments)
 
 
 def test_elastic_wall_is_described_and_survives_dict_round_trip():
@@ -145,15 +145,15 @@ def test_wall_of_a_stack_body_is_drawn_at_that_body():
 
 
 @pytest.mark.parametrize(
-    ("given", "words"),
+    ("arguments", "words"),
     [
         ({"stiffness": "1 MN/m", "height": "40 m"}, "above the top of body 1 at 4 m"),
         ({"on_body": 2}, "there is no body 2"),
     ],
 )
-def test_a_wall_that_misses_its_body_is_refused(given, words):
+def test_a_wall_that_misses_its_body_is_refused(arguments, words):
     with pytest.raises(AssemblyError, match=words):
-        rf.System(BLOCK, rf.RearWall(**given))
+        rf.System(BLOCK, rf.RearWall(**arguments))
 
 
 def test_wall_and_tendon_at_the_edge_allow_scaled_blocks():

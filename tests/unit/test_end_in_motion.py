@@ -1,4 +1,4 @@
-"""Runs that end while the block, which stands, can still overturn."""
+"""Runs that end while the standing block can still overturn."""
 
 import math
 from contextlib import nullcontext
@@ -21,7 +21,7 @@ STILL_MOVING = "still has the energy to overturn"
 
 
 def rise():
-    """Energy to the edge on rigid ground, m g R (1 - cos theta)."""
+    """Return the energy to overturn on rigid ground, m g R (1 - cos theta)."""
     radius = math.hypot(0.25, 1.0)
     return 400.0 * 9.80665 * radius * (1.0 - math.cos(math.atan2(0.25, 1.0)))
 
@@ -57,7 +57,7 @@ def test_run_ending_in_motion_warns():
 
 
 def test_continued_run_ending_in_mid_fall_warns(monkeypatch):
-    monkeypatch.setattr(study, "COMPILING_SHARE", math.inf)  # lanes, whatever they take to compile
+    monkeypatch.setattr(study, "COMPILING_SHARE", math.inf)  # lanes in any case
     system, strong = rf.System(BLOCK), PULSE.scaled(3.0)
     with pytest.warns(SolverWarning, match=STILL_MOVING):
         short = system.simulate(strong, overturning="continue")
@@ -82,7 +82,7 @@ def test_body_held_by_a_tie_beyond_overturning_does_not_warn():
 
 
 def test_falling_lower_body_of_a_stack_warns():
-    """It carries a squat one, which is far from its own overturning angle."""
+    """The slender body carries a squat one, which is far from its own overturning angle."""
     squat = rf.Block(width="0.6 m", height="0.5 m", mass="300 kg")
     slender = rf.Block(width="0.7 m", height="3 m", mass="3 t")
     pads = rf.TwoSpringSupport(frequency_ratio=30, damping_ratio=0.1)
@@ -103,11 +103,11 @@ def test_falling_lower_body_of_a_stack_warns():
 @pytest.mark.parametrize("parts", [[], [PADS], [SOIL], [PADS, CAP, SOIL]], ids=len)
 @pytest.mark.parametrize("share", [0.9, 1.1])
 def test_end_in_motion_warning_follows_the_energy_bound(parts, share):
-    """A block that is let go with a rotation rate of that energy, and looked at at once."""
+    """A block released with the rotation rate of that energy, and examined at once."""
     system = rf.System(BLOCK, *parts)
     setting = system.assembly.setting
     body, rotation = setting.body, 0.0
-    about = body.base_inertia  # about the middle of the base, which pads and soil hold
+    about = body.base_inertia  # about the middle of the base, held by pads and soil
     if not parts:
         about, rotation = body.inertia + body.mass * body.radius**2, 1e-9  # about a corner
     rate = math.sqrt(2.0 * share * setting.overturning_energy / about)
@@ -119,9 +119,9 @@ def test_end_in_motion_warning_follows_the_energy_bound(parts, share):
 def test_sweep_warns_of_cases_ending_in_motion():
     with pytest.warns(ModelWarning, match=STILL_MOVING):
         runs = rf.sweep(rf.System(BLOCK), PULSE, scale=[0.2, 1.0], progress=False)
-    said = runs.message.to_numpy().ravel()
-    assert said[0] == "none"
-    assert STILL_MOVING in said[1]
+    messages = runs.message.to_numpy().ravel()
+    assert messages[0] == "none"
+    assert STILL_MOVING in messages[1]
 
 
 def test_critical_scale_warns_of_runs_ending_in_motion():
@@ -138,7 +138,7 @@ def test_certificate_of_a_run_ending_in_motion_is_limited_to_its_end():
 
 
 def pedestal(height, width="1 m", stiffness="5 MPa"):
-    """A block on pads on a tall cap: held far, it leaves soil and cap without equilibrium."""
+    """A block on pads on a tall cap, which has no equilibrium at large held rotations."""
     return rf.System(
         rf.Block(width="1 m", height="2 m", mass="4 t"),
         rf.TwoSpringSupport(frequency_ratio=20, damping_ratio=0.1),
@@ -170,22 +170,22 @@ def test_cap_on_soft_soil_rotates_more_than_the_block():
     setting = pedestal("1 m", stiffness="1 MPa").assembly.setting
     angle = setting.overturning_angle
     far = setting.statics(angle)
-    assert far.restoring_moment < 0.0  # it has to be pulled back
+    assert far.restoring_moment < 0.0  # it must be pulled back
     assert angle < far.reactions["cap_rotation"] < 1.01 * angle
 
 
 def test_overturning_energy_without_equilibrium_uses_the_reached_range(monkeypatch):
     setting = pedestal("0.5 m").assembly.setting
-    whole, held = setting.overturning_energy, type(setting).curve
+    energy, held = setting.overturning_energy, type(setting).curve
 
-    def gives_way(self, rotations):
+    def loses_equilibrium(self, rotations):
         far = 0.5 * setting.overturning_angle
         states = zip(rotations, held(self, rotations), strict=True)
         return [None if abs(rotation) > far else state for rotation, state in states]
 
-    monkeypatch.setattr(type(setting), "curve", gives_way)
+    monkeypatch.setattr(type(setting), "curve", loses_equilibrium)
     on_the_way = pedestal("0.5 m").assembly.setting.overturning_energy
-    assert 0.5 * whole < on_the_way < whole
+    assert 0.5 * energy < on_the_way < energy
 
 
 @pytest.mark.filterwarnings("ignore::rockframe.errors.RockframeWarning")
@@ -220,7 +220,7 @@ def test_stored_energy_does_not_exceed_its_bound(system, share):
 
 
 def test_stored_energy_bound_is_infinite_on_slopes_and_under_loads():
-    """Uphill, and under a load, more is stored than the weight alone would: there is no bound."""
+    """On a slope or under a load more energy is stored than by the weight alone, without bound."""
     level = max_stored_energy(rf.System(BLOCK, PADS).assembly, 0.01)
     for system, rotation in (
         (rf.System(BLOCK, PADS, inclination="5 deg"), -0.01),

@@ -1,4 +1,4 @@
-"""How messages show what was given, and how errors travel."""
+"""How messages show values, and how errors are raised and pickled."""
 
 import copy
 import pickle
@@ -74,16 +74,16 @@ OF_MANY_FAULTS = {
 @pytest.mark.parametrize("again", [lambda one: pickle.loads(pickle.dumps(one)), copy.copy])  # noqa: S301
 @pytest.mark.parametrize("kind", [getattr(errors, name) for name in dir(errors)])
 def test_errors_survive_pickling_and_copying(kind, again):
-    made = OF_MANY_FAULTS.get(kind, lambda: kind("out of range"))()
-    other = again(made)
+    error = OF_MANY_FAULTS.get(kind, lambda: kind("out of range"))()
+    other = again(error)
     assert type(other) is kind
-    assert str(other) == str(made)
-    assert other.args == made.args
-    assert vars(other) == vars(made)
+    assert str(other) == str(error)
+    assert other.args == error.args
+    assert vars(other) == vars(error)
 
 
 class Console:
-    """Stands for IPython, which asks an error for its traceback, and draws it."""
+    """A substitute for IPython, which takes the traceback of an error and renders it."""
 
     InteractiveTB = None
 
@@ -91,7 +91,7 @@ class Console:
         return self
 
     def structured_traceback(self, kind, error, trace):
-        assert error.__cause__ is None  # it would be drawn too, with its lines
+        assert error.__cause__ is None  # it would be rendered too, with its lines
         assert error.__context__ is None
         return [kind.__name__, *(name for _, _, name, _ in traceback.extract_tb(trace))]
 
@@ -129,12 +129,12 @@ def test_notebooks_show_the_line_that_was_wrong_and_no_other(misuse, monkeypatch
     monkeypatch.setitem(sys.modules, "IPython", console)
     with pytest.raises(RockframeError) as caught:
         misuse()
-    here = "test_notebooks_show_the_line_that_was_wrong_and_no_other"
+    this_test = "test_notebooks_show_the_line_that_was_wrong_and_no_other"
     name, *frames = caught.value._render_traceback_()
     assert name == caught.type.__name__
-    assert frames == [here, "<lambda>"]
-    whole = [one.name for one in caught.traceback]
-    assert len(whole) > 2  # for those who look for it
+    assert frames == [this_test, "<lambda>"]
+    traceback_names = [one.name for one in caught.traceback]
+    assert len(traceback_names) > 2  # the complete traceback is still available
 
 
 def test_ipython_shows_only_the_wrong_line():

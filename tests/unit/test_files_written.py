@@ -1,4 +1,4 @@
-"""Files that are written: none that is read or somebody else's is lost, none is left half done."""
+"""Written files replace no inputs or foreign files, and are never left incomplete."""
 
 import ast
 import os
@@ -28,7 +28,7 @@ def written(tmp_path_factory):
     folder = tmp_path_factory.mktemp("written")
     with pytest.MonkeyPatch.context() as patch:
         patch.chdir(folder)
-        # as the fixture no_pictures, which serves single tests alone
+        # as the fixture no_pictures, which has function scope
         patch.setattr(page, "_rendered", lambda figure, kind: b"<svg/>")
         scene = TEMPLATES["block"].split("[run]", maxsplit=1)[0]
         Path("scene.toml").write_text(scene + '[run]\naccuracy = "fast"\n')
@@ -54,7 +54,7 @@ def written(tmp_path_factory):
 
 @pytest.fixture
 def folder(tmp_path, monkeypatch, written):
-    """Stand among copies of these files."""
+    """Change to a folder with copies of these files."""
     for path, content in written.items():
         (tmp_path / path).parent.mkdir(exist_ok=True)
         (tmp_path / path).write_bytes(content)
@@ -67,7 +67,7 @@ def contents(folder):
 
 
 REFUSED = {
-    # a file that is read, by any of its names
+    # an input, under any of its names
     "run scene.toml -o scene.toml --overwrite": "the result of a run ends in .nc",
     "certify scene.toml -o scene.toml --overwrite": "ends in .nc",
     "run scene.toml -m motion.nc -o motion.nc --overwrite": "this file is an input",
@@ -85,7 +85,7 @@ REFUSED = {
     "plot run.nc -o run.nc --overwrite": "a picture ends in .png or .svg or .pdf",
     "report run.nc -o run.nc --overwrite": "a report ends in .html or .htm",
     "report odd.html --overwrite": "this file is an input",
-    # what somebody else wrote, or rockframe as another kind
+    # files of other programs, or of another kind
     "run scene.toml -o mine.nc": "not the result of a run that rockframe wrote",
     "run scene.toml -o motion.nc": "not the result of a run that rockframe wrote",
     "run scene.toml -o study.nc": "not the result of a run that rockframe wrote",
@@ -103,7 +103,7 @@ REFUSED = {
     "report run.nc -o mine.html": "not a report that rockframe wrote",
     "report run.nc -o moving.html": "not a report that rockframe wrote",
     "report mine.nc": "no result of a run",
-    # names that do not fit
+    # unsuitable names
     "run scene.toml -o out": "the name has no ending",
     "run scene.toml -o out.csv": "ends in '.csv'",
     "run scene.toml -o kept": "this is a folder",
@@ -115,8 +115,8 @@ REFUSED = {
 }
 
 
-def write_others():
-    """Put files there that rockframe has not written, and other names of those that it reads."""
+def write_foreign_files():
+    """Create files that rockframe has not written, and links to its inputs."""
     xr.Dataset({"x": ("t", [1.0])}, attrs={"source": "my own"}).to_netcdf("mine.nc")
     for ending in ("csv", "png", "svg", "pdf", "html"):
         Path(f"mine.{ending}").write_text("a report by rockframe 0.1.0, status, overturned\n1,2\n")
@@ -140,12 +140,12 @@ def write_others():
 @pytest.mark.wide
 @pytest.mark.parametrize("words", REFUSED)
 def test_commands_do_not_replace_inputs_or_foreign_files(words, folder, capsys):
-    write_others()
+    write_foreign_files()
     before = contents(folder)
     assert main(words.split()) == 2
-    told = capsys.readouterr().err
-    assert REFUSED[words] in told
-    assert "Traceback" not in told
+    stderr = capsys.readouterr().err
+    assert REFUSED[words] in stderr
+    assert "Traceback" not in stderr
     assert contents(folder) == before
 
 
@@ -170,12 +170,14 @@ REPLACED = (
 def test_commands_replace_own_files_and_others_on_request(words, folder):
     for ending in ("nc", "csv", "png", "html"):
         Path(f"mine.{ending}").write_text("mine")
-    given = words.split()
-    named = [given[k + 1] for k, word in enumerate(given) if word in ("-o", "--csv", "--picture")]
+    arguments = words.split()
+    named = [
+        arguments[k + 1] for k, word in enumerate(arguments) if word in ("-o", "--csv", "--picture")
+    ]
     for name in named:
         os.utime(name, (0, 0))
         Path(name).chmod(0o640)
-    assert main(given) == 0
+    assert main(arguments) == 0
     for name in named:
         assert Path(name).stat().st_mtime > 0
         assert Path(name).stat().st_mode & 0o777 == 0o640
@@ -183,14 +185,14 @@ def test_commands_replace_own_files_and_others_on_request(words, folder):
 
 
 def test_functions_do_not_replace_foreign_files(folder):
-    write_others()
+    write_foreign_files()
     run = xr.open_dataset("run.nc")
     moving = rf.plot.animation(run, frames_per_second=2)
     record, odd = rf.GroundMotion.read("record.AT2"), xr.open_dataset("odd.html")
     Path("mine.AT2").write_text("mine")
     Path("mine.gif").write_text("mine")
     before = contents(folder)
-    for write, given, words in (
+    for write, arguments, words in (
         (rf.report, (run, "run.nc"), "ends in .html"),
         (rf.report, (run, "mine.html"), "not a report that rockframe wrote"),
         (rf.report, (run, "none/r.html"), "there is no folder 'none'"),
@@ -205,13 +207,13 @@ def test_functions_do_not_replace_foreign_files(folder):
         (run.rockframe.player, ("run.html",), "not a player"),
     ):
         with pytest.raises(FileError, match=words):
-            write(*given)
-    for write, given in (
+            write(*arguments)
+    for write, arguments in (
         (rf.report, (odd, "odd.html")),
         (record.scaled(2.0).to_at2, ("record.AT2",)),
     ):
         with pytest.raises(FileError, match="this file is an input"):
-            write(*given, overwrite=True)
+            write(*arguments, overwrite=True)
     assert contents(folder) == before
     run.close()
     odd.close()
@@ -254,7 +256,7 @@ def test_file_is_written_completely_or_left_unchanged(tmp_path):
 def test_output_file_survives_closed_or_full_stdout(closed, folder):
     words = [sys.executable, "-m", "rockframe", "run", "scene.toml", "-o", "new.nc"]
     reader, writer = os.pipe()
-    os.close(reader)  # whoever read has gone before a word was printed
+    os.close(reader)  # the reader has closed before anything is printed
     with open(os.devnull if closed == "|head" else "/dev/full", "w") as full:
         done = subprocess.run(
             words, stdout=writer if closed == "|head" else full, stderr=subprocess.PIPE, text=True,
@@ -267,12 +269,12 @@ def test_output_file_survives_closed_or_full_stdout(closed, folder):
         assert (done.returncode, "the output cannot be written" in done.stderr) == (2, True)
     else:
         assert (done.returncode, done.stderr) == (0, "")
-    with xr.open_dataset(folder / "new.nc") as kept:
-        assert "verdict" in kept.attrs
+    with xr.open_dataset(folder / "new.nc") as stored:
+        assert "verdict" in stored.attrs
 
 
 WRITES = {"write_text", "write_bytes", "to_netcdf", "to_csv", "savefig", "savetxt", "save"}
-THEMSELVES = {
+OWN_WRITERS = {
     "writing.py": "the mechanism",
     "studies/sweeps/store.py": "the folder of a study, whole or not at all by itself",
     "studies/sweeps/claims.py": "claims in that folder, which one job alone can make",
@@ -289,13 +291,13 @@ THEMSELVES = {
 
 
 def test_only_known_modules_write_files():
-    """A function that writes goes by `write_file`, or its module stands above with its reason."""
+    """A function that writes uses `write_file`, or its module is listed above with a reason."""
     package = Path(rf.__file__).parent
     found = set()
     for file in package.rglob("*.py"):
         text = file.read_text(encoding="utf-8")
         if not re.search(rf"\b({'|'.join(WRITES)}|open|write)\b", text):
-            continue  # no such call is in it
+            continue  # without such a call
         for node in ast.walk(ast.parse(text)):
             if not isinstance(node, ast.Call):
                 continue
@@ -308,4 +310,4 @@ def test_only_known_modules_write_files():
             )
             if getattr(node.func, "attr", "") in WRITES or opens or trees:
                 found.add(file.relative_to(package).as_posix())
-    assert found == set(THEMSELVES)
+    assert found == set(OWN_WRITERS)

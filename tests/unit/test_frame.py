@@ -1,4 +1,4 @@
-"""The frame as an equivalent block: its members, what they come to, what is refused."""
+"""The frame as an equivalent block: its members, its properties, refusals."""
 
 import dataclasses
 import itertools
@@ -41,7 +41,7 @@ def test_members_survive_json_round_trip(name):
         assert again.members_table().identical(frame.members_table())
 
 
-# standing where a block does ----------------------------------------------------------------
+# frames as blocks ----------------------------------------------------------------
 
 
 @pytest.mark.parametrize("name", FRAMES)
@@ -87,7 +87,7 @@ def test_a_system_takes_a_frame_and_gives_the_same_numbers(name):
     ]
     np.testing.assert_array_equal(runs[0].rotation, runs[1].rotation)
     assert "FrameEquivalent.from_members" in rf.System(frame, pads).describe()
-    again = rf.System.from_dataset(runs[0])  # what a file keeps is enough
+    again = rf.System.from_dataset(runs[0])  # the dataset is sufficient
     assert again.describe() == rf.System(frame, pads).describe()
     assert repr(frame) in re.sub(r"(?<=,)\s+", " ", again.describe())
 
@@ -123,7 +123,7 @@ def test_a_shape_factor_below_one_is_warned_about_and_used(arguments):
     assert len(caught) == 1
     assert caught[0].filename == __file__
     assert frame.shape_factor < 1.0
-    # the warning came once; warnings are errors here
+    # no second warning: warnings are errors here
     assert pickle.loads(pickle.dumps(frame)) == frame  # noqa: S301
     assert component_from_dict(frame.to_dict()) == frame
 
@@ -148,11 +148,11 @@ def test_a_frame_from_parameters_knows_no_members():
         frame.members_table()
 
 
-# what the members come to -------------------------------------------------------------------
+# properties of the members -------------------------------------------------------------------
 
 
 def by_brute_force(rectangles, width, height, cells=120):
-    """Return mu of rectangles (mass, x, y, width, height), each summed over a grid of points."""
+    """Return mu of rectangles (mass, x, y, width, height), summed over grids of points."""
     grid = (np.arange(cells) + 0.5) / cells - 0.5
     mass = inertia = 0.0
     for m, x, y, w, h in rectangles:
@@ -202,7 +202,7 @@ def as_members(rectangles):
 def test_shape_factor_matches_point_sum_and_is_at_least_one(building):
     width, height, rectangles = building
     points = by_brute_force(rectangles, width, height)
-    assume(points < 1e4)  # else all mass is in the middle, where the points are too coarse
+    assume(points < 1e4)  # otherwise all mass is near the middle, where the points are too coarse
     frame = FrameEquivalent.from_members(
         as_members(rectangles),
         width=f"{width!r} m",
@@ -241,7 +241,7 @@ def test_grid_of_points_converges_to_shape_factor_three():
             for i, j in itertools.product(range(n), repeat=2)
         ]
         excess.append(FrameEquivalent.from_members(points, **OUTLINE).shape_factor - 3.0)
-    # 1/mu falls short by a part 1/n^2
+    # 1/mu is too small by the share 1/n^2
     assert excess == pytest.approx([3.0 / (n * n - 1.0) for n in (4, 8, 16)], rel=1e-12)
 
 
@@ -254,15 +254,15 @@ def test_mass_in_the_corners_has_the_least_shape_factor():
 
 
 def test_cutting_a_member_in_two_changes_nothing():
-    whole = FrameEquivalent.from_members([core(), tank()], **OUTLINE, depth="3 m")
+    uncut = FrameEquivalent.from_members([core(), tank()], **OUTLINE, depth="3 m")
     halves = [
         core(name="lower", mass="4 t", y="2 m", height="4 m"),
         core(name="upper", mass="6 t", y="7 m", height="6 m"),
         tank(),
     ]
     cut = FrameEquivalent.from_members(halves, **OUTLINE, depth="3 m")
-    assert cut.shape_factor == pytest.approx(whole.shape_factor, rel=1e-14)
-    assert cut.mass == whole.mass
+    assert cut.shape_factor == pytest.approx(uncut.shape_factor, rel=1e-14)
+    assert cut.mass == uncut.mass
 
 
 def test_small_building_matches_hand_calculation():
@@ -300,7 +300,7 @@ def test_centre_of_mass_off_mid_height_warns():
             frame = FrameEquivalent.from_members([point], **MIDDLE)
         assert len(caught) == 1
         assert caught[0].filename == __file__
-        assert component_from_dict(frame.to_dict()) == frame  # silent
+        assert component_from_dict(frame.to_dict()) == frame  # without a warning
     with pytest.warns(ModelWarning, match=r"0\.3805 rad instead of 0\.2783 rad"):
         FrameEquivalent.from_members([tank(y="7 m", x="0 m")], **MIDDLE)
 
@@ -334,9 +334,9 @@ def test_centre_of_mass_follows_from_the_members():
 
 def test_regular_frame_centre_of_mass_defaults_to_the_middle():
     regular = EXAMPLES["regular"]
-    told = FrameEquivalent.from_members(**REGULAR, centre_of_mass="middle")
-    assert told == regular
-    assert told.si == regular.si
+    explicit = FrameEquivalent.from_members(**REGULAR, centre_of_mass="middle")
+    assert explicit == regular
+    assert explicit.si == regular.si
     assert (regular.si.centre_height, regular.si.eccentricity) == (4.5, 0.0)
     own = FrameEquivalent.from_members(**REGULAR, centre_of_mass="members")
     listed = FrameEquivalent.from_members(regular.members, width="4 m", height="9 m")

@@ -1,4 +1,4 @@
-"""Regular frames, the table of members, and what is refused."""
+"""Regular frames, the table of members, and refusals."""
 
 import itertools
 import math
@@ -71,7 +71,7 @@ def test_regular_frame_volume_matches_hand_calculation():
 
 def test_no_two_members_of_a_regular_frame_overlap():
     def occupied(member):
-        # perpendicular to the plane: where members of this kind and side stand
+        # perpendicular to the plane: positions of members of this kind and side
         front = {"front": -1.0, "back": 1.0}.get(member.name.split()[-1], 0.0)
         half = member.si.depth / 2.0
         middle = front * (2.0 - half)
@@ -95,8 +95,8 @@ def test_equal_storeys_may_be_listed_individually():
 
 
 def test_plan_and_columns_default_to_square():
-    told = FrameEquivalent.from_members(**REGULAR, depth="4 m", column_depth="0.25 m")
-    assert told == EXAMPLES["regular"]
+    explicit = FrameEquivalent.from_members(**REGULAR, depth="4 m", column_depth="0.25 m")
+    assert explicit == EXAMPLES["regular"]
     thick = FrameEquivalent.from_members(
         **REGULAR, slab_thickness="12 cm", infill_thickness="0.15 m"
     )
@@ -180,7 +180,7 @@ def test_members_table_marks_unknown_values():
     assert float(row.inertia) == 800.0
 
 
-# what is refused ----------------------------------------------------------------------------
+# refusals ----------------------------------------------------------------------------
 
 
 @pytest.mark.parametrize(

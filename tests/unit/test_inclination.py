@@ -1,4 +1,4 @@
-"""What an inclination is given as, and what refuses one."""
+"""Inclinations: accepted values, refusals, and effects on runs and analyses."""
 
 import math
 import warnings
@@ -16,10 +16,10 @@ SOFT = rf.TwoSpringSupport(stiffness="60 kN/m", damping_ratio=0.1)
 
 
 def test_inclination_needs_an_angle_below_90_degrees():
-    for given, words in ((3.0, "bare number"), ("3", "no unit"), ("3 m", "angle"),
+    for angle, words in ((3.0, "bare number"), ("3", "no unit"), ("3 m", "angle"),
                          ("90 deg", "between -90° and 90°")):  # fmt: skip
         with pytest.raises(AssemblyError, match=words):
-            rf.System(BLOCK, inclination=given)
+            rf.System(BLOCK, inclination=angle)
     assert rf.System(BLOCK, inclination="-0 deg") == rf.System(BLOCK)
     assert rf.System(BLOCK, inclination="3 deg") != rf.System(BLOCK)
     turned = rf.System(BLOCK, inclination="3 deg").inclination
@@ -88,7 +88,7 @@ def test_ladder_certificate_and_critical_scale_use_the_slope():
 
 @pytest.mark.parametrize(("peak", "leaves"), [("-9.9 m/s^2", False), ("-10.1 m/s^2", True)])
 def test_separation_warning_uses_gravity_normal_to_the_slope(peak, leaves):
-    """On a slope g cos(i) presses, less than g: of a motion normal to it that much is enough."""
+    """On a slope only g cos(i) presses, so that a smaller normal acceleration separates."""
     angle, gravity = math.radians(12.0), 10.2
     size = float(peak.split()[0])
     assert (-size > gravity * math.cos(angle)) == leaves
@@ -101,6 +101,6 @@ def test_separation_warning_uses_gravity_normal_to_the_slope(peak, leaves):
         vertical=(normal * math.cos(angle), "m/s^2"),
     )
     system = rf.System(BLOCK, inclination="12 deg", gravity=f"{gravity} m/s^2")
-    with warnings.catch_warnings(record=True, action="always") as said:
+    with warnings.catch_warnings(record=True, action="always") as caught:
         system.simulate(motion, outputs=None)
-    assert any("leave the rigid ground" in str(one.message) for one in said) == leaves
+    assert any("leave the rigid ground" in str(one.message) for one in caught) == leaves

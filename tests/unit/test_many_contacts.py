@@ -1,4 +1,4 @@
-"""A bed of single springs, each of which touches or not: far more modes than a run meets."""
+"""A bed of single springs, with far more possible modes than a run reaches."""
 
 from contextlib import contextmanager
 from dataclasses import replace
@@ -28,13 +28,13 @@ PULSE = rf.GroundMotion.sine_pulse(amplitude="-3 m/s^2", frequency="1 Hz")
 class SpringNumbers(NamedTuple):
     """Springs in a row from one end to the other."""
 
-    stiffness: float  # of one, per unit mass
+    stiffness: float  # of one spring, per unit mass
     settlement: float
     count: int
 
 
 class Springs(ext.Base, SpringNumbers):
-    """A base of which each bit of a contact lifts one spring."""
+    """A base in whose contact number each bit is a lifted spring."""
 
     __slots__ = ()
 
@@ -52,7 +52,7 @@ class Springs(ext.Base, SpringNumbers):
         return which if left else self.count - 1 - which
 
     def along(self, i, left, right):
-        """Return the value at a spring of what is linear along the base."""
+        """Interpolate linearly along the base at a spring."""
         return left + (right - left) * i / (self.count - 1)
 
     def pressed(self, i, line):
@@ -108,7 +108,7 @@ class Springs(ext.Base, SpringNumbers):
 
 
 class SpringSupport(ext.BedSupport):
-    """Springs of the stiffness of a bed, all together."""
+    """Springs with the total stiffness of a bed."""
 
     count = 0
 
@@ -128,7 +128,7 @@ class SpringSupport(ext.BedSupport):
 
 @contextmanager
 def springs(count):
-    """Return soil of so many springs, registered as long as this lasts."""
+    """Yield soil of so many springs, registered during the context."""
     support = type("Some", (SpringSupport,), {"count": count})
 
     class SpringBed(ext.OwnBase):
@@ -164,7 +164,7 @@ def springs(count):
 def test_a_scene_is_built_whatever_the_number_of_modes(count, coupling):
     with springs(count) as soil, plain_python():
         system = rf.System(BLOCK, PADS, CAP, soil, coupling=coupling)
-        began = thread_time()  # of this thread: others may take the processor
+        began = thread_time()  # of this thread, since others share the processor
         model = system.setting.compile()
         assert thread_time() - began < 0.05
         assert model.system.modes() == 8 * CONTACTS * 8 * 2**count

@@ -1,4 +1,4 @@
-"""What is said to those who try what seems natural: which argument, and how it is written."""
+"""Messages for natural but wrong usage name the argument and show its correct form."""
 
 import gzip
 import logging
@@ -24,7 +24,7 @@ PULSE = rf.GroundMotion.sine_pulse("-3 m/s^2")
 
 
 class Quantity:
-    """A quantity as astropy has them."""
+    """A quantity as in astropy."""
 
     __module__ = "astropy.units.quantity"
 
@@ -44,7 +44,7 @@ def system():
     return rf.System(block(), pads())
 
 
-ASKED = {
+MISTAKES = {
     "a system where a comparison is needed": (
         lambda: rf.recommend(system(), 0.1),
         SchemaError,
@@ -123,9 +123,9 @@ ASKED = {
 }
 
 
-@pytest.mark.parametrize("asked", ASKED)
-def test_error_message_suggests_the_correct_usage(asked):
-    call, kind, words = ASKED[asked]
+@pytest.mark.parametrize("mistake", MISTAKES)
+def test_error_message_suggests_the_correct_usage(mistake):
+    call, kind, words = MISTAKES[mistake]
     with pytest.raises(kind) as caught:
         call()
     for each in words:
@@ -166,9 +166,9 @@ def test_number_and_unit_pairs_are_quantities():
 
 
 def test_contradictory_depths_warn():
-    def soil(depth, **given):
+    def soil(depth, **arguments):
         return rf.WinklerSoil.from_subgrade_modulus(
-            "20 MN/m^3", depth=depth, damping_ratio=0.2, **given
+            "20 MN/m^3", depth=depth, damping_ratio=0.2, **arguments
         )
 
     def frame(depth):
@@ -184,7 +184,7 @@ def test_contradictory_depths_warn():
         rf.System(frame("6 m"), cap, soil("4 m"))
     rf.System(frame("4 m"), soil("4 m"))  # warnings are errors here
     rf.System(frame("6 m"), cap, soil("5 m"))
-    rf.System(block(), soil("4 m"))  # of a block no depth is known
+    rf.System(block(), soil("4 m"))  # the depth of a block is unknown
     assert soil("4 m").depth.m_as("m") == pytest.approx(4.0)
     assert rf.WinklerSoil(stiffness="80 MPa", damping_ratio=0.2).depth is None
 
@@ -221,10 +221,10 @@ def test_unwritable_cache_folder_is_logged_once(tmp_path, monkeypatch, caplog):
         own_entries.add_one(values)
         own_entries.add_two(values)
     assert values.tolist() == [3.0]
-    told = [one.getMessage() for one in caplog.records]
-    assert len(told) == 1
-    assert str(taken) in told[0]
-    assert "ROCKFRAME_CACHE_DIR" in told[0]
+    messages = [one.getMessage() for one in caplog.records]
+    assert len(messages) == 1
+    assert str(taken) in messages[0]
+    assert "ROCKFRAME_CACHE_DIR" in messages[0]
 
 
 PADS = rf.TwoSpringSupport(frequency_ratio=40, damping_ratio=0.1)
@@ -274,7 +274,7 @@ def test_measure_names_are_case_insensitive(name):
 
 
 def _named(owner, name):
-    """Public functions with their names, those of classes too."""
+    """Return public functions and methods with their names."""
     for one in dir(owner):
         found = None if one.startswith("_") else getattr(owner, one)
         if isinstance(found, FunctionType):
@@ -303,11 +303,13 @@ TAKING |= {
 
 
 def _last_argument(function):
-    """An argument that is known by its name; of a function that takes any, None."""
-    given = signature(function).parameters.values()
-    if any(one.kind is one.VAR_KEYWORD for one in given):
+    """Return a named argument, or None if the function takes any name."""
+    parameters = signature(function).parameters.values()
+    if any(one.kind is one.VAR_KEYWORD for one in parameters):
         return None
-    named = [one.name for one in given if one.kind in (one.KEYWORD_ONLY, one.POSITIONAL_OR_KEYWORD)]
+    named = [
+        one.name for one in parameters if one.kind in (one.KEYWORD_ONLY, one.POSITIONAL_OR_KEYWORD)
+    ]
     return next((one for one in reversed(named) if len(one) > 4), None)
 
 
@@ -323,7 +325,7 @@ def test_every_function_answers_a_misspelt_argument(name):
 def test_misspelt_keys_of_suites_and_examples_get_a_suggestion():
     suite = rf.MotionSuite({"first": SHAKING, "second": SHAKING.scaled(2.0)})
     assert "frist" not in suite
-    for given, words in (
+    for key, words in (
         (lambda: suite["frist"], "was 'first' meant?"),
         (lambda: suite.select(magnitud=(6, 8)), "was 'magnitude' meant?"),
         (lambda: rf.GroundMotion.example("loma-preta"), "was 'loma-prieta' meant?"),
@@ -335,5 +337,5 @@ def test_misspelt_keys_of_suites_and_examples_get_a_suggestion():
         ),
     ):
         with pytest.raises((KeyError, rf.errors.RockframeError)) as caught:
-            given()
+            key()
         assert words in str(caught.value)

@@ -1,4 +1,4 @@
-"""What users get wrong: each is refused in rockframe's words, whatever was given."""
+"""Invalid values of any type are refused with errors of rockframe."""
 
 import warnings
 from pathlib import Path
@@ -35,8 +35,8 @@ def runs():
     return rf.sweep(SYSTEM, PULSE, scale=[0.5, 1.0], accuracy="fast", progress=False)
 
 
-def swept(**given):
-    return rf.sweep(SYSTEM, PULSE, progress=False, **given)
+def swept(**arguments):
+    return rf.sweep(SYSTEM, PULSE, progress=False, **arguments)
 
 
 MISUSES = {
@@ -156,13 +156,13 @@ OF_RESULTS = {
 }  # fmt: skip
 
 
-def refused(call, *given):
-    """Call what must be refused; give what was said instead, where it was not."""
+def refused(call, *values):
+    """Make a call that must be refused; return what is wrong if it is not."""
     try:
-        call(*given)
+        call(*values)
     except RockframeError as problem:
         return "" if len(str(problem)) > 20 else f"says only {problem}"
-    except Exception as problem:  # what must not be
+    except Exception as problem:  # a fault
         return f"{type(problem).__name__}: {problem}"
     return "was taken"
 
@@ -172,8 +172,8 @@ def refused(call, *given):
 def test_invalid_values_are_refused(name, tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     call, values = MISUSES[name]
-    said = {repr(value)[:60]: refused(call, value) for value in values}
-    assert not {value: words for value, words in said.items() if words}
+    faults = {repr(value)[:60]: refused(call, value) for value in values}
+    assert not {value: words for value, words in faults.items() if words}
 
 
 @pytest.mark.filterwarnings("ignore")
@@ -181,14 +181,14 @@ def test_invalid_values_are_refused(name, tmp_path, monkeypatch):
 def test_invalid_values_are_refused_for_results(name, run, tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     call, values = OF_RESULTS[name]
-    said = {repr(value)[:60]: refused(call, run, value) for value in values}
-    assert not {value: words for value, words in said.items() if words}
+    faults = {repr(value)[:60]: refused(call, run, value) for value in values}
+    assert not {value: words for value, words in faults.items() if words}
     assert list(tmp_path.iterdir()) == []
 
 
 def test_missing_sweep_labels_are_refused(runs):
-    for given in (7.0, "x", "1 m", 10**400, None, [1.0, 2.0]):
-        assert refused(lambda value: rf.case(runs, scale=value), given) == ""
+    for label in (7.0, "x", "1 m", 10**400, None, [1.0, 2.0]):
+        assert refused(lambda value: rf.case(runs, scale=value), label) == ""
 
 
 SCENE = TEMPLATES["block"].split("[run]", maxsplit=1)[0] + '[run]\naccuracy = "fast"\n'
@@ -284,7 +284,7 @@ LINES = (
 
 @pytest.fixture
 def folder(tmp_path, monkeypatch, run):
-    """Stand in a folder with a scene, a study, a record, a result, and files that are none."""
+    """Change to a folder with a scene, a study, a record, a result, and invalid files."""
     monkeypatch.chdir(tmp_path)
     Path("scene.toml").write_text(SCENE)
     Path("study.toml").write_text(AXIS)
@@ -297,18 +297,18 @@ def folder(tmp_path, monkeypatch, run):
     return tmp_path
 
 
-def told(words, capsys):
-    """Type a command; give what is wrong with how it is refused."""
+def fault_of_refusal(words, capsys):
+    """Run a command; return what is wrong with its refusal."""
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")
         code = main(words)
-    said = "".join(capsys.readouterr())
-    return code != 2 or "Traceback" in said or len(said) < 30
+    output = "".join(capsys.readouterr())
+    return code != 2 or "Traceback" in output or len(output) < 30
 
 
 def test_invalid_command_lines_are_refused(folder, capsys):
-    given = {line: [word.replace("_", " ") for word in line.split()] for line in LINES}
-    assert not [line for line, words in given.items() if told(words, capsys)]
+    commands = {line: [word.replace("_", " ") for word in line.split()] for line in LINES}
+    assert not [line for line, words in commands.items() if fault_of_refusal(words, capsys)]
 
 
 @pytest.mark.parametrize("command", FILES)
@@ -316,7 +316,7 @@ def test_invalid_files_are_refused(command, folder, capsys):
     wrong = []
     for text in FILES[command]:
         Path("wrong.toml").write_text(text)
-        if told([command, "wrong.toml"], capsys):
+        if fault_of_refusal([command, "wrong.toml"], capsys):
             wrong.append(text)
     assert not wrong
 

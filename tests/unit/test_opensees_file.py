@@ -1,4 +1,4 @@
-"""The file that OpenSees runs: its numbers, and, where openseespy is installed, what it finds."""
+"""The exported OpenSees file: its numbers, and its results where openseespy is installed."""
 
 import csv
 import importlib.util
@@ -27,13 +27,13 @@ HEAD = (
 
 
 class Recorder:
-    """Takes the calls of a model in the place of OpenSees."""
+    """Records the calls of a model in the place of OpenSees."""
 
     def __init__(self):
         self.calls = []
 
     def __getattr__(self, name):
-        return lambda *given: self.calls.append((name, *given))
+        return lambda *args: self.calls.append((name, *args))
 
     def of(self, name):
         return [call[1:] for call in self.calls if call[0] == name]
@@ -41,7 +41,7 @@ class Recorder:
 
 def written(system, motion, tmp_path, **options):
     path = system.to_opensees(motion, tmp_path / "model.py", **options)
-    return runpy.run_path(str(path))  # imports no OpenSees: it is imported when it runs
+    return runpy.run_path(str(path))  # OpenSees is only imported by running the model
 
 
 @pytest.mark.parametrize("base", BASES)
@@ -50,8 +50,8 @@ def test_opensees_model_matches_the_system(base, dashpots, tmp_path):
     system = rf.System(BLOCK, BASES[base], restraint="centre")
     both = PULSE.with_vertical(PULSE.scaled(0.5))
     found = written(system, both, tmp_path, free_vibration="1 s", springs=10, dashpots=dashpots)
-    given, ops = found["PARAMETERS"], Recorder()
-    middle, above, top = found["build"](ops, given)
+    parameters, ops = found["PARAMETERS"], Recorder()
+    middle, above, top = found["build"](ops, parameters)
     places = {tag: np.array(place) for tag, *place in ops.of("node")}
     masses = {tag: mass for tag, mass, _ in ops.of("mass")}
     assert min(masses.values()) > 0.0
@@ -83,9 +83,9 @@ def test_opensees_model_matches_the_system(base, dashpots, tmp_path):
     np.testing.assert_array_equal(across, both.si.horizontal.samples)
     np.testing.assert_array_equal(up, both.si.vertical.samples)
     run = system.simulate(both, free_vibration="1 s", output_step="0.01 s")
-    np.testing.assert_allclose(given["rotation"], run.rotation, rtol=1e-8, atol=1e-30)
-    assert given["peak"] == run.peak_rotation.item()
-    # every node is held by two bars at least, or is the middle of the base
+    np.testing.assert_allclose(parameters["rotation"], run.rotation, rtol=1e-8, atol=1e-30)
+    assert parameters["peak"] == run.peak_rotation.item()
+    # every node has at least two bars, or is the middle of the base
     ends = [end for call in ops.of("element") if call[0] == "corotTruss" for end in call[2:4]]
     ground = {call[2] for call in springs}
     assert all(ends.count(tag) >= 2 for tag in places if tag not in ground)
@@ -125,23 +125,23 @@ def test_invalid_export_arguments_are_refused(tmp_path):
         system.to_opensees(PULSE, path)
     path.unlink()
     system.to_opensees(PULSE, path)
-    system.to_opensees(PULSE.scaled(0.5), path)  # over its own
+    system.to_opensees(PULSE.scaled(0.5), path)  # replaces its own file
 
 
 def test_rotation_at_the_final_unaligned_time_is_not_exported(tmp_path):
-    """A run that overturns ends between two of them; OpenSees goes on to the next."""
+    """A run that overturns ends between two samples; OpenSees continues to the next."""
     system = rf.System(BLOCK, PADS, restraint="centre")
     strong = PULSE.scaled(3.0)
-    given = written(system, strong, tmp_path, free_vibration="3 s")["PARAMETERS"]
+    parameters = written(system, strong, tmp_path, free_vibration="3 s")["PARAMETERS"]
     run = system.simulate(strong, free_vibration="3 s", output_step="0.01 s", outputs=())
     assert run.overturned
-    assert given["outputs"] == run.sizes["time"]
-    assert given["rotation"].size == run.sizes["time"] - 1
-    np.testing.assert_allclose(given["rotation"], run.rotation[:-1], rtol=1e-8, atol=1e-30)
+    assert parameters["outputs"] == run.sizes["time"]
+    assert parameters["rotation"].size == run.sizes["time"] - 1
+    np.testing.assert_allclose(parameters["rotation"], run.rotation[:-1], rtol=1e-8, atol=1e-30)
 
 
 def differences(system, motion, tmp_path, **options):
-    """Run the file; give by how much peak and history differ [%]."""
+    """Run the file; return the differences of peak and history [%]."""
     path = system.to_opensees(motion, tmp_path / "model.py", **options)
     ran = subprocess.run(
         [sys.executable, str(path)], capture_output=True, text=True, check=False, timeout=300
@@ -163,7 +163,7 @@ def differences(system, motion, tmp_path, **options):
 @pytest.mark.parametrize("row", table(PAGE, HEAD), ids=lambda row: f"{row[0]}, {row[1]}")
 @pytest.mark.filterwarnings("ignore:restitution 1 exceeds")
 def test_opensees_reproduces_documented_differences(row, tmp_path):
-    """Under the pulse; the record takes a minute."""
+    """Under the pulse; the record would take a minute."""
     block = rf.Block(width="0.8 m", height="4 m", mass="2 t")
     name, dashpots, peak, _, history, _ = row
     base = {"pads": PADS, "soil": SOIL, "rigi": rf.RigidGround()}[name[:4]]

@@ -1,4 +1,4 @@
-"""What parts give back, how they are changed, and what their signatures and docs show."""
+"""Attributes of parts, copies with changes, signatures and docstrings."""
 
 import copy
 import inspect
@@ -93,11 +93,11 @@ def test_storey_heights_may_be_listed():
     assert FRAME.replace(storey_heights=FRAME.storey_heights).si == FRAME.si
 
 
-# replacing -----------------------------------------------------------------------------------
+# replacement -----------------------------------------------------------------------------------
 
 
 @pytest.mark.parametrize(
-    ("part", "changes", "gone"),
+    ("part", "changes", "cleared"),
     [
         (PADS, {"damping_ratio": 0.2}, ()),
         (PADS, {"frequency_ratio": 20}, ("stiffness",)),
@@ -115,10 +115,10 @@ def test_storey_heights_may_be_listed():
         (TILTED, {"angular_velocity": "1 rad/s"}, ()),
     ],
 )
-def test_a_part_is_changed_by_copying(part, changes, gone):
+def test_a_part_is_changed_by_copying(part, changes, cleared):
     before = part.to_dict()
     changed = part.replace(**changes)
-    arguments = {name: value for name, value in before.items() if name not in ("type", *gone)}
+    arguments = {name: value for name, value in before.items() if name not in ("type", *cleared)}
     assert changed == type(part)(**{**arguments, **changes})
     assert changed != part
     assert part.to_dict() == before
@@ -168,7 +168,7 @@ def test_replace_changes_dimensions_of_a_regular_frame():
 class TestConstructor:
     def test_has_every_declared_parameter_as_keyword(self, kind):
         arguments = dict(inspect.signature(kind).parameters)
-        if kind is rf.Block:  # stands for two of them
+        if kind is rf.Block:  # stands for two declared parameters
             assert arguments.pop("centre_of_mass").default is None
         assert set(arguments) == set(kind._declared)
         for name, argument in arguments.items():
@@ -207,7 +207,7 @@ def test_value_containers_are_immutable():
         del PADS.si.stiffness
 
 
-# parts of one's own --------------------------------------------------------------------------
+# user-defined parts --------------------------------------------------------------------------
 
 
 def pickled(part):
@@ -346,6 +346,6 @@ TIE = {"on": ("-0.4 m", "3 m"), "to": ("-1 m", "3 m"), "stiffness": "1 MN/m"}
     ids=lambda part: type(part).__name__,
 )
 def test_every_parameter_that_is_named_can_be_scaled(part):
-    """As certificates do; of a frame from its members it is that of the equivalent block."""
+    """As certificates do; for a frame from members, those of the equivalent block."""
     for name in part.parameters():
         assert part.with_scaled(name, 0.999) != part

@@ -26,7 +26,7 @@ pytestmark = pytest.mark.unit
 
 
 @pytest.mark.parametrize(
-    ("given", "expected"),
+    ("value", "expected"),
     [
         (20, 20.0),
         (np.float32(20.0), 20.0),
@@ -37,8 +37,8 @@ pytestmark = pytest.mark.unit
         ("20 m/mm", 20000.0),
     ],
 )
-def test_a_ratio_may_be_bare_or_dimensionless(given, expected):
-    assert make_pads(frequency_ratio=given).si.frequency_ratio == pytest.approx(expected)
+def test_a_ratio_may_be_bare_or_dimensionless(value, expected):
+    assert make_pads(frequency_ratio=value).si.frequency_ratio == pytest.approx(expected)
 
 
 def test_a_ratio_may_be_a_quantity_of_any_registry():
@@ -75,7 +75,7 @@ def test_a_ratio_must_be_finite(name):
         assert "finite" in message
 
 
-# the registry that all libraries share -----------------------------------------------------
+# the application registry -----------------------------------------------------
 
 
 def test_application_registry_is_not_modified():
@@ -177,23 +177,23 @@ LONG = {"length": "mm", "stiffness": "kN/mm"}
 
 def test_sentences_are_converted_to_display_units():
     units = display_units({"acceleration": "g", "length": "mm"}, owner="a figure")
-    told = units.convert_text(
+    converted = units.convert_text(
         "from 9.80665 to 19.6133 m s^-2, 0.02 m, -1e-3 m; 2 m s^-1, 3 m s^-2."
     )
-    assert told == "from 1 to 2 g, 20 mm, -1 mm; 2 m s^-1, 0.3059 g."
+    assert converted == "from 1 to 2 g, 20 mm, -1 mm; 2 m s^-1, 0.3059 g."
     chosen = {**LONG, "moment": "MN*m", "force": "kN", "angle": "deg", "mass": "t"}
     units = display_units(chosen, owner="a figure")
-    for text, wanted in (
+    for text, expected in (
         ("M_OT 4707 N m, 1e+07 N", "M_OT 0.004707 MN m, 10000 kN"),
         ("1.5e+07 N/m, 80 N s/m", "15 kN mm^-1, 80 N s/m"),
         ("at (-0.5, 3) m, 4 kg m^2", "at (-500, 3000) mm, 4 kg m^2"),
         ("0.0544 m at most, 3 mm, 2 months", "54.4 mm at most, 3 mm, 2 months"),
         ("Block(width='0.6 m', mass='5000.0 kg')", "Block(width='600 mm', mass='5 t')"),
-        # the same behind it in degrees goes; and a rounded number has a digit less in them
+        # a repetition in degrees is dropped; a rounded number has one digit less in degrees
         ("0.244979 rad (14.04°), 0.01663 rad", "14.036°, 0.953°"),
         ("0.5 rad/s", "0.5 rad/s"),
     ):
-        assert units.convert_text(text) == wanted
+        assert units.convert_text(text) == expected
     assert display_units(None, owner="a figure").convert_text("4 m") == "4 m"
 
 
@@ -201,7 +201,7 @@ def test_pair_with_a_quantity_is_not_read_as_number_and_unit():
     metre = pint.Quantity(1.0, "m")
     assert to_si_values([metre, "20 cm"], LENGTH, owner="here", name="width") == [1.0, 0.2]
     assert to_si_values([[1, 2], "cm"], LENGTH, owner="here", name="width") == [0.01, 0.02]
-    # whole numbers of a generator, which were lost, and an array without dimensions
+    # integers of a generator, and an array without dimensions
     each = to_si_values(((k for k in (1, 2)), "cm"), LENGTH, owner="here", name="width")
     assert each == [0.01, 0.02]
     assert to_si_values((np.array(7.0), "cm"), LENGTH, owner="here", name="width") == [0.07]
@@ -233,8 +233,8 @@ def test_conflicting_unit_of_an_array_is_refused(values, unit, read):
 
 def test_conflicting_units_of_accelerations_and_times_are_refused():
     array = xr.DataArray([0.0, 1.0], dims="x", attrs={"units": "m s-2"})
-    for given in (array, (array, "m/s^2")):
-        assert rf.GroundMotion.from_arrays(given, "0.01 s").si.peak == 1.0
+    for value in (array, (array, "m/s^2")):
+        assert rf.GroundMotion.from_arrays(value, "0.01 s").si.peak == 1.0
     for own in (array, QUANTITY(np.array([0.0, 1.0]), "cm/s^2")):
         with pytest.raises(UnitsError, match=r"acceleration has the unit .*, but 'g' is given"):
             rf.GroundMotion.from_arrays((own, "g"), "0.01 s")

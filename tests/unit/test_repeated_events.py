@@ -1,4 +1,4 @@
-"""Events, and steps, that change nothing."""
+"""Events and steps that change nothing."""
 
 from types import SimpleNamespace
 
@@ -14,7 +14,7 @@ STATE = (0.1, -0.2)
 
 
 def recorded(rows, modes=(3, 3), memory=(0.0,)):
-    """Return the status after the last of some events: the time of each, and the state before."""
+    """Return the status after a series of events, given by time and state before."""
     progress = Progress(np.zeros(at.CONTROLS), np.zeros(at.CLOCK), np.zeros(at.COUNTERS, int))
     events = EventTable(np.zeros((9, 6)), np.zeros((9, 3), dtype=np.int64))
     before, after = (UnpackedMode(mode, 1, int(ContactState.FULL), 1.0) for mode in modes)
@@ -46,8 +46,8 @@ def test_other_events_are_not_chatter(rows, modes):
 
 
 def test_steps_at_rest_do_not_change_peak_rotation_ratio():
-    """However many outputs a run has, each of which ends such a step."""
-    rows = [[0.2, 0.2, 1.0], [0.11, 0.39, 1.0]]  # of the highest body, and of a lower one
+    """Each output ends such a step."""
+    rows = [[0.2, 0.2, 1.0], [0.11, 0.39, 1.0]]  # of the highest and of a lower body
     rest = {name: np.zeros(2) for name in ("state", "new_state", "slope", "new_slope")}
     place, clock = SimpleNamespace(limits=np.ravel(rows), **rest), np.zeros(at.CLOCK)
     for share in np.linspace(0.01, 0.9, 50):

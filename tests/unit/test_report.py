@@ -1,4 +1,4 @@
-"""Reports: what stands in them, and that they need no other file."""
+"""Reports: contents, and independence from other files."""
 
 import datetime
 import inspect
@@ -27,13 +27,13 @@ pytestmark = [pytest.mark.unit, pytest.mark.usefixtures("no_pictures")]
 
 @pytest.fixture(autouse=True)
 def short_certificates(monkeypatch):
-    """Have certificates that a report makes try as few runs as they may."""
+    """Limit certificates of reports to the least number of runs."""
     defaults = inspect.unwrap(rf.Certification.__init__).__kwdefaults__
     monkeypatch.setitem(defaults, "runs", MIN_RUNS)
 
 
 class Page(HTMLParser):
-    """Tags, what they refer to, and all text."""
+    """The tags of a page, their addresses, and its text."""
 
     def __init__(self, text):
         super().__init__()
@@ -70,11 +70,11 @@ def test_report_is_complete_and_self_contained(response, tmp_path):
     assert not {"script", "link", "iframe", "object"} & page.tags
     assert not re.search(r"url\(|@import", text)
     words = " ".join(page.text.split())
-    for said in (
+    for phrase in (
         "Tower & bell",
         response.attrs["verdict"],
         "Certificate: the verdict holds",
-        "The body stands also with",  # the run has no certificate: it is made for the report
+        "The body stands also with",  # the report certifies a run without a certificate
         "0.8 m",
         "5500 kg",
         "greatest absolute ground acceleration",
@@ -85,7 +85,7 @@ def test_report_is_complete_and_self_contained(response, tmp_path):
         response.attrs["motion_sha256"],
         f"rockframe {rf.__version__}",
     ):
-        assert said in words, said
+        assert phrase in words, phrase
     assert "springs of the bed" not in words  # there is no soil
 
 
@@ -112,18 +112,18 @@ def test_overturned_run_under_a_record_is_certified_from_file(tmp_path):
     for motion in (level, both):
         run = system.simulate(motion)
         assert bool(run.overturned)
-        assert float(run.time[-1]) < 7.9  # and the motion goes on
+        assert float(run.time[-1]) < 7.9  # and the motion continues
         run.to_netcdf(tmp_path / "out.nc")
-        with xr.open_dataset(tmp_path / "out.nc") as kept:
-            assert rf.System.from_dataset(kept).motion == rf.GroundMotion.from_arrays(
+        with xr.open_dataset(tmp_path / "out.nc") as stored:
+            assert rf.System.from_dataset(stored).motion == rf.GroundMotion.from_arrays(
                 (shaking, "m/s^2"), "0.02 s", name=motion.name,
                 **({"vertical": (0.5 * shaking, "m/s^2")} if motion is both else {}),
             )  # fmt: skip
-            rf.report(kept, tmp_path / "out.html")
+            rf.report(stored, tmp_path / "out.html")
         assert "No certificate" not in (tmp_path / "out.html").read_text()
     assert rf.concat([run, run]).sizes == {"run": 2}
     assert "ground_acceleration_after_end [m s^-2]" not in rf.table(run)
-    # other samples are no other motion: the digest tells
+    # a motion with other samples has another digest
     changed = run.assign(ground_acceleration_after_end=0.0 * run.ground_acceleration_after_end)
     with pytest.warns(RecordWarning, match="not what the run had"):
         assert rf.System.from_dataset(changed).motion is None
@@ -133,7 +133,7 @@ LONGER, BEYOND = {"free_vibration": "9 s"}, {"overturning": "continue"}
 
 
 @pytest.mark.parametrize(
-    ("parts", "given"),
+    ("parts", "options"),
     [
         ("rigid", LONGER),
         ("pads", BEYOND),
@@ -145,7 +145,7 @@ LONGER, BEYOND = {"free_vibration": "9 s"}, {"overturning": "continue"}
         pytest.param("stack", BEYOND, marks=pytest.mark.long),
     ],
 )
-def test_runs_that_overturned_under_a_record_are_certified(parts, given, tmp_path):
+def test_runs_that_overturned_under_a_record_are_certified(parts, options, tmp_path):
     scenes = {
         "rigid": (BLOCK,), "sliding": (BLOCK, rf.RigidGround(friction=0.5)), "pads": (BLOCK, PADS),
         "stack": (rf.Stack(BLOCK, rf.Block(width="1.2 m", height="1.2 m", mass="1 t"),
@@ -153,12 +153,12 @@ def test_runs_that_overturned_under_a_record_are_certified(parts, given, tmp_pat
     }  # fmt: skip
     shaking = 9.0 * np.sin(np.linspace(0.0, 30.0, 400)) * np.linspace(0.2, 1.0, 400)
     record = rf.GroundMotion.from_arrays((shaking, "m/s^2"), "0.02 s", name="a record")
-    run = rf.System(*scenes[parts]).simulate(record, **given)
+    run = rf.System(*scenes[parts]).simulate(record, **options)
     assert bool(run.overturned)
     run.to_netcdf(tmp_path / "out.nc")
-    with xr.open_dataset(tmp_path / "out.nc") as kept:
-        words = words_of(rf.report(kept, tmp_path / "out.html"))
-    assert "verturned" in words  # of a block that may slide: did not slide, overturned
+    with xr.open_dataset(tmp_path / "out.nc") as stored:
+        words = text_of_report(rf.report(stored, tmp_path / "out.html"))
+    assert "verturned" in words  # a block that may slide "did not slide, overturned"
     assert "Certificate: the verdict" in words
     assert "No certificate" not in words
 
@@ -167,8 +167,8 @@ def test_report_of_a_coarsely_sampled_run_requests_its_motion(tmp_path):
     shaking = 9.0 * np.sin(np.linspace(0.0, 30.0, 400)) * np.linspace(0.2, 1.0, 400)
     record = rf.GroundMotion.from_arrays((shaking, "m/s^2"), "0.02 s", name="a record")
     coarse = rf.System(BLOCK, PADS).simulate(record, free_vibration="9 s", output_step="0.1 s")
-    said = words_of(rf.report(coarse, tmp_path / "out.html"))
-    assert "does not hold the samples of its motion; pass it by motion=" in said
+    text = text_of_report(rf.report(coarse, tmp_path / "out.html"))
+    assert "does not hold the samples of its motion; pass it by motion=" in text
 
 
 ROUGH = {"frequency_ratio": 20, "damping_ratio": 0.1, "friction": 0.2}
@@ -232,10 +232,12 @@ def test_report_states_overturning_after_sliding_and_would_slide(tmp_path):
 
 
 def test_a_certificate_near_a_boundary_is_shown_as_such(response):
-    told = response.assign(dict.fromkeys(("verdict_converged", "verdict_robust"), True))
-    told.attrs["certificate"] = certificate.NEAR_WORDS + ": the body stands, but ..."
+    certified = response.assign(dict.fromkeys(("verdict_converged", "verdict_robust"), True))
+    certified.attrs["certificate"] = certificate.NEAR_WORDS + ": the body stands, but ..."
     (shown,) = [
-        one for one in sections.verdict_section(told, "", DisplayUnits()) if "Certificate" in one
+        one
+        for one in sections.verdict_section(certified, "", DisplayUnits())
+        if "Certificate" in one
     ]
     assert "the verdict holds, but near a boundary" in shown
     assert 'class="verdict doubt"' in shown
@@ -243,23 +245,23 @@ def test_a_certificate_near_a_boundary_is_shown_as_such(response):
 
 @pytest.mark.parametrize("doubted", ["verdict_converged", "verdict_robust"])
 def test_certificate_holds_only_if_converged_and_robust(response, doubted):
-    told = response.assign(dict.fromkeys(("verdict_converged", "verdict_robust"), True))
-    told.attrs["certificate"] = "The body stands."
-    assert "the verdict holds" in "".join(sections.verdict_section(told, "", DisplayUnits()))
+    certified = response.assign(dict.fromkeys(("verdict_converged", "verdict_robust"), True))
+    certified.attrs["certificate"] = "The body stands."
+    assert "the verdict holds" in "".join(sections.verdict_section(certified, "", DisplayUnits()))
     assert "the verdict is in doubt" in "".join(
-        sections.verdict_section(told.assign({doubted: False}), "", DisplayUnits())
+        sections.verdict_section(certified.assign({doubted: False}), "", DisplayUnits())
     )
 
 
 def test_only_results_are_reported(response, tmp_path):
     measures = rf.measures.intensity_measures(rf.GroundMotion.sine_pulse())
-    for given, words in (
+    for value, words in (
         ("out.nc", "xr.open_dataset"),
         (measures, "no result of a run or of a study"),
         (response.drop_vars("overturned"), "no result of a run"),
     ):
         with pytest.raises(SchemaError, match=words):
-            rf.report(given, tmp_path / "x.html")
+            rf.report(value, tmp_path / "x.html")
     assert not (tmp_path / "x.html").exists()
 
 
@@ -279,7 +281,7 @@ SUITE = {
 }
 
 
-def words_of(path):
+def text_of_report(path):
     spaced = re.sub(r"</(td|th|strong|li)>", r" \g<0>", path.read_text(encoding="utf-8"))
     page = Page(spaced)
     assert page.open == []
@@ -292,7 +294,7 @@ def test_requested_outputs_are_reported_in_display_units(tmp_path):
         SUITE["long"], outputs=("base_shear", "base_overturning_moment"),
         points={"bell": ("0 m", "2 m")},
     )  # fmt: skip
-    words = words_of(rf.report(run, tmp_path / "r.html", certify=False, units=UNITS))
+    words = text_of_report(rf.report(run, tmp_path / "r.html", certify=False, units=UNITS))
     largest = float(run.peak_base_shear) / 1e3
     assert f"largest absolute base shear up to overturning {largest:.4g} kN" in words
     top = run.point_horizontal_acceleration.sel(point="bell") / 9.80665
@@ -318,11 +320,11 @@ def test_nested_parts_have_separate_tables():
 
 def test_report_contains_project_and_conclusion(response, tmp_path):
     path = rf.report(response, tmp_path / "r.html", certify=False, project=PROJECT)
-    words = words_of(path)
-    for said in ("Object Bell <tower>", "Checked by C. Rossi", "Date 2026-11-24",
+    words = text_of_report(path)
+    for phrase in ("Object Bell <tower>", "Checked by C. Rossi", "Date 2026-11-24",
                  "Conclusion It stands.", "Assumptions Sound masonry. A level floor."):  # fmt: skip
-        assert said in words, said
-    assert path.read_text().count("<ol>") == 2  # what is assumed, and what is left out
+        assert phrase in words, phrase
+    assert path.read_text().count("<ol>") == 2  # assumptions and limitations
     for wrong, message in (
         ({"objekt": "x"}, "project has no entry 'objekt'; was 'object' meant?"),
         ({"object": 3.5}, "object of the project must be text"),
@@ -340,7 +342,7 @@ def test_sweep_report_lists_all_cases_and_the_worst_in_full(tmp_path):
     runs = rf.sweep(
         rf.System(BLOCK, PADS), motions=SUITE, scale=[0.5, 2.0], outputs=forces, output_step="5 ms"
     )
-    words = words_of(rf.report(runs, tmp_path / "r.html", units=UNITS, project=PROJECT))
+    words = text_of_report(rf.report(runs, tmp_path / "r.html", units=UNITS, project=PROJECT))
     assert "Some cases overturned Of all 4 cases" in words
     for motion in SUITE:
         for scale in (0.5, 2.0):
@@ -361,7 +363,7 @@ def test_sweep_report_lists_all_cases_and_the_worst_in_full(tmp_path):
     assert f"0.5 short {shear:.4g} " in words
     mean = np.degrees(float(runs.peak_rotation.mean()))
     assert f"mean of 4 {mean:.4g}" in words
-    # the worst falls first: its verdict is that of the run alone
+    # the worst case overturns first, with the verdict of the single run
     alone = rf.case(runs, motion="long", scale=2.0).simulate()
     assert "Simulated again: scale 2, motion long." in words
     assert alone.attrs["verdict"] in words
@@ -379,7 +381,7 @@ def test_sweep_report_shows_forces_and_slips_in_display_units(tmp_path):
         rf.System(BLOCK, rough, *ties), motions=SUITE, scale=[0.5, 1.0], output_step="5 ms",
         outputs=("left_reaction", "vertical_reaction"), points={"top": ("0 m", "2.4 m")},
     )  # fmt: skip
-    words = words_of(rf.report(runs, tmp_path / "r.html", units={**UNITS, "force": "kN"}))
+    words = text_of_report(rf.report(runs, tmp_path / "r.html", units={**UNITS, "force": "kN"}))
     for head in (
         "peak slip [mm]", "residual slip [mm]", "peak base shear [kN]",
         "peak restrainer force (soft) [kN]", "peak restrainer force (hard) [kN]",
@@ -388,7 +390,7 @@ def test_sweep_report_shows_forces_and_slips_in_display_units(tmp_path):
         "peak point horizontal acceleration (top) [g]",
     ):  # fmt: skip
         assert head in words, head
-    assert "right reaction" not in words.split("The worst case in full")[0]  # not asked for
+    assert "right reaction" not in words.split("The worst case in full")[0]  # not requested
     for motion in SUITE:
         one = runs.sel(motion=motion, scale=1.0)
         numbers = [
@@ -399,7 +401,7 @@ def test_sweep_report_shows_forces_and_slips_in_display_units(tmp_path):
             float(abs(one.vertical_reaction).max()) / 1e3,
             float(one.peak_point_horizontal_displacement.squeeze()) * 1e3,
         ]
-        # two tables, which fit on a sheet
+        # two tables that fit on a page
         for table in (numbers[:5], numbers[5:]):
             assert f"1 {motion} " + " ".join(f"{number:.4g}" for number in table) in words
     largest = float(runs.peak_slip.max()) * 1e3
@@ -414,7 +416,7 @@ def test_report_columns_exist_in_the_schema():
 def test_report_lists_the_worst_of_many_cases(tmp_path, monkeypatch):
     monkeypatch.setattr(cases, "MAX_ROWS", 3)
     runs = rf.sweep(rf.System(BLOCK), SUITE["long"], scale=[0.4, 0.7, 2.0, 3.0, 4.0])
-    words = words_of(rf.report(runs, tmp_path / "r.html"))
+    words = text_of_report(rf.report(runs, tmp_path / "r.html"))
     assert "The 3 worst of 5 cases." in words
     assert "mean of 5" in words
     first = float(runs.overturning_time.squeeze().idxmin("scale"))
@@ -427,16 +429,16 @@ def test_report_lists_the_worst_of_many_cases(tmp_path, monkeypatch):
 def test_every_analysis_has_a_report(tmp_path):
     system = rf.System(BLOCK, PADS)
     runs = rf.sweep(system, motions=SUITE, scale=[0.5, 1.0, 2.0])
-    for name, result, said in (
+    for name, result, phrase in (
         ("fragility", rf.fragility(runs, intensity="PGA"), "Limit states"),
         ("critical", rf.critical_scale(system, SUITE["long"], largest=3.0), "Figure"),
         ("joined", rf.concat([system.simulate(one) for one in SUITE.values()], "run"), "Cases"),
     ):
-        words = words_of(rf.report(result, tmp_path / f"{name}.html"))
-        assert said in words, name
+        words = text_of_report(rf.report(result, tmp_path / f"{name}.html"))
+        assert phrase in words, name
         assert "Provenance" in words
         assert "not described" not in words
-        assert "s^-" not in words.split("Scene")[0]  # powers stand above the line
+        assert "s^-" not in words.split("Scene")[0]  # powers are superscripts
 
 
 def test_a_dynamic_analysis_has_its_capacities(tmp_path, monkeypatch):
@@ -444,7 +446,7 @@ def test_a_dynamic_analysis_has_its_capacities(tmp_path, monkeypatch):
         rf.System(BLOCK), SUITE, scale=[0.5, 1.0, 2.0], intensity="PGA"
     )
     capacities = found.capacity_scale.sel(limit_state="overturning")
-    words = words_of(rf.report(found, tmp_path / "all.html"))
+    words = text_of_report(rf.report(found, tmp_path / "all.html"))
     for name, one in zip(capacities.motion.to_numpy(), capacities.to_numpy(), strict=True):
         written = f"{one:.4g}" if np.isfinite(one) else "infinite"
         assert f"overturning {name} {written}" in words.split("Capacities")[1]
@@ -456,7 +458,7 @@ def test_a_dynamic_analysis_has_its_capacities(tmp_path, monkeypatch):
         words.replace("median peak ground acceleration", "median")
     )
     monkeypatch.setattr(cases, "MAX_ROWS", 1)
-    words = words_of(rf.report(found, tmp_path / "least.html"))
+    words = text_of_report(rf.report(found, tmp_path / "least.html"))
     least = str(capacities.motion[int(np.argmin(capacities.to_numpy()))].item())
     assert "The 1 least of 2 capacities." in words
     assert f"flip count overturning {least} " in words
@@ -465,7 +467,7 @@ def test_a_dynamic_analysis_has_its_capacities(tmp_path, monkeypatch):
 def test_missing_motion_can_be_passed_to_the_report(tmp_path):
     record = rf.GroundMotion.from_arrays(([0.0, 3.0, -3.0, 0.0] * 40, "m/s^2"), "0.01 s")
     run = rf.System(BLOCK).simulate(record, outputs=None)
-    words = words_of(rf.report(run, tmp_path / "r.html", motion=record))
+    words = text_of_report(rf.report(run, tmp_path / "r.html", motion=record))
     assert "Certificate: the verdict" in words
     assert "No certificate" not in words
     with pytest.raises(SchemaError, match="whose samples are not those of the run"):
@@ -480,7 +482,7 @@ def test_report_refuses_a_motion_for_a_run_without_one(tmp_path):
 
 
 def test_certificate_of_a_different_run_is_rejected(tmp_path):
-    """Of runs that were joined nobody knows the motions: another one has the same verdict."""
+    """Motions of joined runs are unknown: another motion may have the same verdict."""
     system = rf.System(rf.Block(width="0.8 m", height="3.2 m", mass="5.5 t"))
     pulses = [rf.GroundMotion.sine_pulse(f"{peak} m/s^2", "2 Hz") for peak in (3.0, 4.0)]
     joined = rf.concat([system.simulate(one, outputs=None) for one in pulses], "run")
@@ -530,7 +532,7 @@ def test_report_mean_states_case_count_and_infinity_is_written_out(tmp_path):
     times = runs.first_uplift_time.to_numpy()
     known = times[np.isfinite(times)]
     assert 0 < known.size < times.size
-    words = words_of(rf.report(runs, tmp_path / "r.html"))
+    words = text_of_report(rf.report(runs, tmp_path / "r.html"))
     assert f"{known.mean():.4g} (of {known.size})" in words
     assert format_value(xr.DataArray(np.inf)) == "infinite"
 
@@ -543,16 +545,18 @@ def test_measures_state_component_and_threshold(tmp_path):
     ):
         run = rf.System(BLOCK).simulate(motion)
         units = {"acceleration": "g"}
-        told = words_of(rf.report(run, tmp_path / "r.html", certify=False, units=units))
-        assert words in told
-        assert "last exceedance of 0.05 g" in told
+        text = text_of_report(rf.report(run, tmp_path / "r.html", certify=False, units=units))
+        assert words in text
+        assert "last exceedance of 0.05 g" in text
 
 
 def test_limitations_mention_the_certificate_only_if_present(tmp_path):
     system, pulse = rf.System(BLOCK), rf.GroundMotion.sine_pulse("-3 m/s^2", "2 Hz")
 
-    def limits(found, **given):
-        return words_of(rf.report(found, tmp_path / "r.html", **given)).split("Limits of")[1]
+    def limits(found, **arguments):
+        return text_of_report(rf.report(found, tmp_path / "r.html", **arguments)).split(
+            "Limits of"
+        )[1]
 
     run = system.simulate(pulse)
     assert "The certificate shows how near" in limits(run)
@@ -592,8 +596,8 @@ def test_toppled_cases_are_reported_as_overturned(tmp_path):
     runs = rf.sweep(rf.System(BLOCK), pulse, scale=[0.1, 1.0], overturning="continue",
                     free_vibration="5 s")  # fmt: skip
     assert bool(runs.overturned.sel(scale=1.0).item())
-    cases_told = words_of(rf.report(runs, tmp_path / "r.html")).split("Cases")[1]
-    table = cases_told.split("mean of")[0]
+    cases = text_of_report(rf.report(runs, tmp_path / "r.html")).split("Cases")[1]
+    table = cases.split("mean of")[0]
     assert "toppled" not in table
     assert table.count("did not overturn") == 1
     assert table.count("overturned") == 1

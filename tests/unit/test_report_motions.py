@@ -1,4 +1,4 @@
-"""Reports: the spectra of the motions beside their target, their records, and checks by codes."""
+"""Reports: spectra of motions and their target, records, and checks by codes."""
 
 import re
 import warnings
@@ -22,10 +22,10 @@ KNOWN = {"event": "Irpinia <1980>", "station": "Sturno", "component": "N270", "m
 
 
 def record(seed):
-    """A motion that only its samples describe, of which some things are known."""
-    made = rf.GroundMotion.stochastic(6.5, "15 km", seed=seed).window("4 s", "16 s")
+    """Return a sampled motion with some metadata."""
+    motion = rf.GroundMotion.stochastic(6.5, "15 km", seed=seed).window("4 s", "16 s")
     known = {} if seed == 0 else {**KNOWN, "station": f"Sturno {seed}"}
-    return rf.GroundMotion(made.si, name=f"record {seed}", metadata=known)
+    return rf.GroundMotion(motion.si, name=f"record {seed}", metadata=known)
 
 
 @pytest.fixture(scope="module")
@@ -44,8 +44,8 @@ def text_of(path):
     return " ".join(unescape(re.sub(r"<[^>]*>", " ", html)).split())
 
 
-def rows_of(path, section):
-    """Cells of the tables of a section."""
+def section_cells(path, section):
+    """Return the cells of the tables of a section."""
     inner = path.read_text(encoding="utf-8").split(f"<h2>{section}</h2>", 1)[1].split("<h2>")[0]
     lines = re.findall(r"<tr>(.*?)</tr>", inner, re.DOTALL)
     return [re.findall(r"<t[dh][^>]*>(.*?)</t[dh]>", line) for line in lines]
@@ -58,8 +58,8 @@ def test_scaled_suite_carries_its_target(suite):
     for one in (suite, suite.only(["record 1"]), suite.sort("station"), level):
         assert one.target.name == TARGET.name
         assert one.target.limits == pytest.approx((0.1, 4.0))
-        wanted = TARGET.at((seconds, "s"))
-        assert one.target.at((seconds, "s")) == pytest.approx(wanted, rel=1e-12)
+        target = TARGET.at((seconds, "s"))
+        assert one.target.at((seconds, "s")) == pytest.approx(target, rel=1e-12)
     assert suite.changed(lambda motion: motion.scaled(2.0)).target is None
     assert rf.MotionSuite(dict(suite)).target is None
     chosen = suite.chosen_for(TARGET, 2, bounds=None, periods=["0.3 s", "0.5 s", "1 s"])
@@ -75,7 +75,7 @@ def test_report_compares_records_with_their_target(runs, suite, tmp_path):
     assert TARGET.name.endswith("ground B, 1.961 m/s^2")
     assert "ground B, 0.2 g. Compared at 40 periods from 0.1 s" in words
     assert "Response spectra of the motions at 5 % damping, their mean, and the target" in words
-    head, *rows = rows_of(path, "Ground motions")
+    head, *rows = section_cells(path, "Ground motions")
     assert head == ["motion", "event", "magnitude", "station", "component", "scale factor",
                     "peak ground acceleration [g]", "spectral misfit"]  # fmt: skip
     for row, (label, motion) in zip(rows, suite.items(), strict=True):
@@ -84,14 +84,16 @@ def test_report_compares_records_with_their_target(runs, suite, tmp_path):
         of_record = ["-"] * 4
         if label != "record 0":
             of_record = ["Irpinia &lt;1980&gt;", "6.9", f"Sturno {label[-1]}", "N270"]
-        # the misfit is found anew, from the motions as they are
+        # the misfit is computed anew from the current motions
         numbers = [f"{known['scale_factor']:.4g}", f"{peak:.4g}", f"{known['spectral_misfit']:.4g}"]
         assert row == [label, *of_record, *numbers]
     seconds = (np.geomspace(0.1, 4.0, 40), "s")
     spectra = suite.response_spectrum(seconds).pseudo_spectral_acceleration.squeeze()
     over = spectra.mean("motion") / TARGET.at(seconds)
-    said = f"The mean of the motions is {float(over.min()):.3g} to {float(over.max()):.3g} times"
-    assert said in words
+    sentence = (
+        f"The mean of the motions is {float(over.min()):.3g} to {float(over.max()):.3g} times"
+    )
+    assert sentence in words
 
 
 @pytest.mark.wide
@@ -138,22 +140,22 @@ def test_records_of_a_reopened_study_can_be_passed_to_the_report(suite, tmp_path
     assert re.search("The worst case Not simulated again; .* must be given, as motions=", bare)
     assert "Scene Values of the scene from which the cases differ in: gravity." in bare
     assert "as motions= or, in a shell, by --motions." in bare
-    whole = text_of(rf.report(read, path, motions=suite))
-    assert "Compared at 40 periods" in whole
-    assert "The worst case in full" in whole
+    expected = text_of(rf.report(read, path, motions=suite))
+    assert "Compared at 40 periods" in expected
+    assert "The worst case in full" in expected
     few = text_of(rf.report(read, path, motions=suite.only(["record 2"])))
     assert "Sturno 2" in few
     assert "Sturno 3" not in few
-    kept = text_of(rf.report(rf.open_study(tmp_path / "kept"), path))  # with its records
-    assert "Sturno 3" in kept
-    assert "The worst case in full" in kept
+    text = text_of(rf.report(rf.open_study(tmp_path / "kept"), path))  # with its records
+    assert "Sturno 3" in text
+    assert "The worst case in full" in text
 
 
 def test_records_of_unlike_time_steps_are_reported_with_their_forces(tmp_path):
     steps = ("0.01 s", "0.02 s", "0.015 s")
     motions = {f"R{k}": record(k).resampled(step) for k, step in enumerate(steps)}
-    said = "time steps from 0.01 s to 0.02 s; histories are kept every 0.01 s for all of them"
-    with pytest.warns(RecordWarning, match=said):
+    sentence = "time steps from 0.01 s to 0.02 s; histories are kept every 0.01 s for all of them"
+    with pytest.warns(RecordWarning, match=sentence):
         runs = rf.sweep(BLOCK, motions, scale=[3.0], outputs=["base_shear"])
     assert np.diff(runs.time) == pytest.approx(0.01, rel=1e-9)
     for name, motion in motions.items():
@@ -177,9 +179,9 @@ def test_a_run_has_its_record_and_its_target(suite, tmp_path):
     path = rf.report(run, tmp_path / "r.html", motion=suite["record 3"], target=TARGET,
                      certify=False)  # fmt: skip
     words = text_of(path)
-    for said in ("Spectrum and target", "station Sturno 3", "component N270",
+    for phrase in ("Spectrum and target", "station Sturno 3", "component N270",
                  f"scale factor {suite['record 3'].metadata['scale_factor']:.4g}"):  # fmt: skip
-        assert said in words, said
+        assert phrase in words, phrase
 
 
 def test_report_of_joined_runs_accepts_motions(suite, tmp_path):
@@ -203,21 +205,21 @@ def test_report_includes_code_checks(check, tmp_path):
                                  spectral_acceleration=1.0)  # fmt: skip
     units = {"force": "kN", "length": "mm"}
     path = rf.report(run, tmp_path / "r.html", checks=[check, cabinet], certify=False, units=units)
-    told = display_units(units, owner="a test").convert_text
+    convert = display_units(units, owner="a test").convert_text
     words = text_of(path)
     above = words.split("Response")[0]
     assert "Did not overturn" in above
     for one in (*check.verdicts, *cabinet.verdicts):
-        said = "satisfied" if one.passed else "not satisfied"
-        assert f"{one.title}: {said} {told(one.words)} [{one.source}]" in above
-    rows = {row[0]: row for row in rows_of(path, "Check by Circolare C.S.LL.PP. 21 January 2019")
-            if row}  # fmt: skip
+        result = "satisfied" if one.passed else "not satisfied"
+        assert f"{one.title}: {result} {convert(one.words)} [{one.source}]" in above
+    rows = {row[0]: row for row in section_cells(path, "Check by Circolare C.S.LL.PP. 21 January"
+            " 2019") if row}  # fmt: skip
     assert rows["alpha_0"][1:] == ["0.25", "activation multiplier, sum(P d_Py)/sum((P + Q) d_PQx)",
                                    "C8.7.1.1"]  # fmt: skip
     assert rows["d_SLV"][1] == f"{1e3 * check.value('d_SLV'):.6g} mm"
     assert rows["T_SLC"][3] == "C8.7.1.11"
     assert "Checked: Block(width='600 mm', height='2400 mm', mass='1000.0 kg')" in words
-    force = {row[0]: row for row in rows_of(path, "Check by ASCE/SEI 7-22") if row}["F_p"]
+    force = {row[0]: row for row in section_cells(path, "Check by ASCE/SEI 7-22") if row}["F_p"]
     assert force[1] == f"{cabinet.value('F_p') / 1e3:.6g} kN"
     for wrong in ("circolare_2019", [3.5], 3.5):
         with pytest.raises(ComponentError, match=r"checks must be of rf\.codes"):

@@ -1,4 +1,4 @@
-"""Reports in units of the reader: no sentence of them is left in another one."""
+"""Reports in display units: no value is left in another unit."""
 
 import re
 from html import unescape
@@ -17,12 +17,17 @@ UNITS = {
     "length": "mm", "mass": "t", "angle": "deg", "angular_velocity": "deg/s", "velocity": "cm/s",
     "acceleration": "g", "force": "kN", "moment": "kN*m", "energy": "kJ", "stiffness": "kN/mm",
 }  # fmt: skip
-LEFT = ("s", "Hz", "N s m^-1", "kg m^2", "kg m^-3", "m^3")
+UNCHANGED = ("s", "Hz", "N s m^-1", "kg m^2", "kg m^-3", "m^3")
 """Units of which none is chosen, of those that begin with one of which one is."""
-SPELLED = [str(one) for one in Unit if one not in (*LEFT, "1")] + ["m/s^2", "m/s", "N/m", "rad/s"]
+SPELLED = [str(one) for one in Unit if one not in (*UNCHANGED, "1")] + [
+    "m/s^2",
+    "m/s",
+    "N/m",
+    "rad/s",
+]
 RAISED = str.maketrans("⁻⁰¹²³⁴⁵⁶⁷⁸⁹", "-0123456789")
 SI = re.compile(
-    rf"\d (?!(?:{'|'.join(map(re.escape, LEFT))}|N s/m)(?![\w^/]))"
+    rf"\d (?!(?:{'|'.join(map(re.escape, UNCHANGED))}|N s/m)(?![\w^/]))"
     rf"(?:{'|'.join(map(re.escape, sorted(SPELLED, key=len, reverse=True)))})(?![\w^/])"
 )
 BLOCK = rf.Block(width="0.6 m", height="2.4 m", mass="1 t")
@@ -30,14 +35,14 @@ WALL = rf.System(rf.Block(width="0.6 m", height="6 m", mass="5 t"), rf.RearWall(
 PULSE = rf.GroundMotion(rf.GroundMotion.sine_pulse("3 m/s^2", "1 Hz").si, name="pulse")
 
 
-def words_of(path):
-    """Return what a report says, but for what builds its scene again."""
+def text_of_report(path):
+    """Return the text of a report without the code that rebuilds its scene."""
     html = path.read_text(encoding="utf-8").split("</style>", 1)[1].split("<h2>Provenance</h2>")[0]
     return unescape(re.sub(r"<[^>]*>", " ", html))
 
 
-def left_in_si(words):
-    """Return numbers in SI units of which others were chosen, with what stands around them."""
+def numbers_in_si(words):
+    """Return numbers in SI units for which other units were chosen, with the text around them."""
     words = re.sub(
         r"(?<=[A-Za-z])[⁻⁰¹²³⁴⁵⁶⁷⁸⁹]+", lambda one: f"^{one[0].translate(RAISED)}", words
     )
@@ -45,8 +50,8 @@ def left_in_si(words):
 
 
 def test_helper_finds_si_units_left_in_text():
-    assert len(left_in_si("0.6 m wide, 3 m s⁻², 4 N m, 5 N/m; '2 kg'")) == 5
-    assert left_in_si("3 mm, 5 kN m, 2 s, 4 N s/m, 5 kg m², 3 months") == []
+    assert len(numbers_in_si("0.6 m wide, 3 m s⁻², 4 N m, 5 N/m; '2 kg'")) == 5
+    assert numbers_in_si("3 mm, 5 kN m, 2 s, 4 N s/m, 5 kg m², 3 months") == []
 
 
 def test_report_of_a_sliding_run_uses_display_units(tmp_path):
@@ -54,14 +59,16 @@ def test_report_of_a_sliding_run_uses_display_units(tmp_path):
     tie = rf.Restrainer(on=("-0.3 m", "2 m"), to=("-1 m", "2 m"), stiffness="20 kN/m", slack="1 cm")
     run = rf.System(BLOCK, pads, tie).simulate(PULSE, outputs=("base_shear", "energy"))
     assert re.search(r"Slid [\d.]+ m to the \w+", run.attrs["verdict"])
-    words = words_of(rf.report(run, tmp_path / "r.html", units=UNITS, certify=False))
-    assert left_in_si(words) == []
+    words = text_of_report(rf.report(run, tmp_path / "r.html", units=UNITS, certify=False))
+    assert numbers_in_si(words) == []
     slid = 1e3 * abs(float(run.residual_slip))
     assert f"Slid {slid:.3g} mm to the" in words
     turned = np.degrees(float(run.peak_rotation))
     assert re.search(rf"peak rotation {turned:.3g}0*°", words)
     assert "600 mm" in words  # the block
-    assert len(left_in_si(words_of(rf.report(run, tmp_path / "r.html", certify=False)))) > 20
+    assert (
+        len(numbers_in_si(text_of_report(rf.report(run, tmp_path / "r.html", certify=False)))) > 20
+    )
 
 
 def test_code_checks_use_display_units(tmp_path):
@@ -74,16 +81,16 @@ def test_code_checks_use_display_units(tmp_path):
     ]
     run = WALL.simulate(PULSE)
     path = rf.report(run, tmp_path / "r.html", units=UNITS, checks=checks, certify=False)
-    words = words_of(path)
-    assert left_in_si(words) == []
-    needed, there = (checks[0].value(name) for name in ("d_demand", "d_SLV"))
-    assert f"demand {1e3 * needed:.4g} mm, capacity {1e3 * there:.4g} mm" in words
+    words = text_of_report(path)
+    assert numbers_in_si(words) == []
+    needed, available = (checks[0].value(name) for name in ("d_demand", "d_SLV"))
+    assert f"demand {1e3 * needed:.4g} mm, capacity {1e3 * available:.4g} mm" in words
     tipping = 1e-3 * checks[2].value("M_OT")
     assert f"M_OT {tipping:.4g} kN m" in words
     for one in checks:
-        alone = words_of(one.report(tmp_path / "c.html", units=UNITS))
-        assert left_in_si(alone) == []
-        assert left_in_si(words_of(one.report(tmp_path / "c.html")))
+        alone = text_of_report(one.report(tmp_path / "c.html", units=UNITS))
+        assert numbers_in_si(alone) == []
+        assert numbers_in_si(text_of_report(one.report(tmp_path / "c.html")))
     assert checks[2].lines["Forces"][0].written() == "9.80665 kN"
     with pytest.raises(
         ComponentError, match=r"CodeCheck\.report: units belong to kinds of quantities"
@@ -96,8 +103,8 @@ def test_sweep_report_uses_display_units(tmp_path):
     runs = rf.sweep(system, PULSE, width=["0.6 m", "0.7 m"], progress=False)
     target = rf.TargetSpectrum.eurocode_8("0.25 g_0", "B")
     path = rf.report(runs, tmp_path / "r.html", units=UNITS, target=target)
-    words = words_of(path)
-    assert left_in_si(words) == []
+    words = text_of_report(path)
+    assert numbers_in_si(words) == []
     most = 1e3 * float(runs.peak_slip.max())
     assert f"slid, by {most:.3g} mm at most" in words
     assert re.search(r"Simulated again: width [67]00 mm", words)
@@ -107,8 +114,8 @@ def test_titles_of_figures_follow_the_units(tmp_path):
     run = rf.System(BLOCK).simulate(PULSE, free_vibration="1 s", outputs=("energy",))
     turned = f"{np.degrees(float(run.peak_rotation)):.3g}"
     for draw in (rf.plot.response, rf.plot.phase, rf.plot.energies):
-        drawn = draw(run, units=UNITS)
-        figure = drawn.figure
+        panels = draw(run, units=UNITS)
+        figure = panels.figure
         assert f"peak rotation {turned}°" in " ".join(figure.get_suptitle().split())
     assert f"peak rotation {turned}°" in rf.plot.player(run, units=UNITS).to_html()
 
@@ -120,4 +127,4 @@ def test_wrong_unit_is_quoted_as_typed(unit):
     words = str(caught.value)
     assert f"got '{unit}'" in words
     assert "m s^-2" in words
-    assert "9.81" not in words  # which is a value, and no unit
+    assert "9.81" not in words  # the value of g, not the unit

@@ -123,9 +123,9 @@ def test_a_run_shows_each_restrainer(tmp_path):
     assert imbalance(found) < 1e-8
     assert float(found.energy_residual) < 1e-8
     found.to_netcdf(tmp_path / "tied.nc")
-    with xr.open_dataset(tmp_path / "tied.nc") as kept:
-        assert kept.restrainer.values.tolist() == ["upper", "restrainer 2"]
-        assert rf.System.from_dataset(kept).parts.links == (TIE, PRELOADED)
+    with xr.open_dataset(tmp_path / "tied.nc") as stored:
+        assert stored.restrainer.values.tolist() == ["upper", "restrainer 2"]
+        assert rf.System.from_dataset(stored).parts.links == (TIE, PRELOADED)
 
 
 def test_the_mirror_image_moves_as_the_mirror_image():
@@ -166,7 +166,7 @@ def test_on_rigid_ground_ties_a_million_times_stiffer_than_the_weight_hold():
     found = system.simulate(pulse, **options)
     assert 0.0 < float(found.peak_rotation) < 1e-6
     assert float(found.energy_residual) < 1e-8
-    # as those that can break, if not at any force there is
+    # as ties that could break, at an unreachable force
     strong = rf.System(BLOCK, *(one.replace(strength="1e12 N") for one in ties))
     again = strong.simulate(pulse, **options)
     np.testing.assert_array_equal(again.rotation, found.rotation)
@@ -181,7 +181,7 @@ def test_ties_on_rigid_ground_add_their_closed_forms():
     np.testing.assert_allclose(
         tied.restoring_moment - free.restoring_moment, 4.0 * k * b**2 * np.sin(angles), rtol=1e-12
     )
-    # all the vertical load stands on the corner
+    # the corner bears all vertical load
     np.testing.assert_allclose(tied.base_moment, tied.held_right_reaction * b, rtol=1e-12)
     level = rf.Restrainer(on=("-0.5 m", f"{z} m"), to=("-1e9 m", f"{z} m"), stiffness=f"{k} N/m")
     tied = rf.System(BLOCK, level).moment_rotation((angles, "rad"))
@@ -335,7 +335,7 @@ def test_axes_name_ties_in_one_word_and_take_truth_values(tmp_path):
 )
 def test_what_is_none_or_without_end_is_as_if_not_given(base, one, other):
     tie = TIE.replace(slack=None, strength=None)
-    runs = [run(BLOCK, base, tie.replace(**given)) for given in (one, other)]
+    runs = [run(BLOCK, base, tie.replace(**changes)) for changes in (one, other)]
     np.testing.assert_allclose(runs[0].rotation, runs[1].rotation, rtol=0.0, atol=1e-13)
     assert list(runs[0].event_kind) == list(runs[1].event_kind)
 
@@ -349,8 +349,8 @@ def test_on_pads_a_tie_that_never_pulls_changes_nothing():
     assert not (found.restrainer_force != 0.0).any()
 
 
-def test_ever_smaller_impacts_end_at_rest_while_ties_pull():
-    """What bears is looked for where the body is, not where what holds it is."""
+def test_decaying_impacts_with_ties_end_at_rest():
+    """Contacts are sought at the position of the body, not of its restrainer."""
     block = rf.Block(width="0.75 m", height="1.04 m", mass="1556 kg")
     ties = [
         rf.Restrainer(
@@ -370,8 +370,8 @@ def test_ever_smaller_impacts_end_at_rest_while_ties_pull():
 
 
 @pytest.mark.filterwarnings("ignore::rockframe.errors.ModelWarning")
-def test_a_corner_that_does_not_press_is_held_beside_ties():
-    """It would come back at once if it were let go, by its acceleration where it is."""
+def test_unloaded_corner_is_held_with_ties():
+    """If released, it would return at once by its acceleration at that position."""
     width, height = 1.49, 3.32
     block = rf.Block(width=f"{width} m", height=f"{height} m", mass="9880 kg")
     tie = rf.Restrainer(on=("0.745 m", "2.13 m"), to=("2.23 m", "2.75 m"), stiffness="362 kN/m")
@@ -396,15 +396,15 @@ def test_ties_add_what_they_store_to_the_energy_that_overturns_a_mixed_stack():
     free, tied = (rf.System(stack, PADS, *some).setting for some in ((), (tie,)))
     weight = 2e3 * free.gravity
     assert free.overturning_energy == pytest.approx(weight * (math.hypot(0.3, 1.0) - 1.0), rel=1e-9)
-    # about its left corner the block's left face turns away from the tie's other point
-    angle, given = math.atan2(0.3, 1.0), np.array([-0.3, 1.0]) - np.array([-0.6, -0.5])
+    # rotating about its left corner, the left face moves away from the tie's other point
+    angle, tie_vector = math.atan2(0.3, 1.0), np.array([-0.3, 1.0]) - np.array([-0.6, -0.5])
 
     def stored(side):
         pivot = np.array([0.3 * side, 0.0])
         turn = np.array([[math.cos(angle), side * math.sin(angle)],
                          [-side * math.sin(angle), math.cos(angle)]])  # fmt: skip
         now = pivot + turn @ (np.array([-0.3, 1.0]) - pivot) - np.array([-0.6, -0.5])
-        return 0.5 * 2e3 * (math.hypot(*now) - math.hypot(*given)) ** 2
+        return 0.5 * 2e3 * (math.hypot(*now) - math.hypot(*tie_vector)) ** 2
 
     added = tied.overturning_energy - free.overturning_energy
     assert added == pytest.approx(min(stored(1.0), stored(-1.0)), rel=0.05)
@@ -414,35 +414,35 @@ def test_ties_add_what_they_store_to_the_energy_that_overturns_a_mixed_stack():
 @pytest.mark.parametrize(
     "number",
     [
-        755,  # a tie of 2e10 N/m, the last bit of whose length is more than the rounding of weights
-        # ties between bodies that rest on one another, taut or slack by the last bit
+        755,  # a tie of 2e10 N/m, where the last bit of length exceeds the rounding of weights
+        # ties between stacked bodies, taut or slack by the last bit
         pytest.param(508, marks=pytest.mark.long),
         pytest.param(2074, marks=pytest.mark.long),
         # a corner held without pressing while the body below is held on the ground
         pytest.param(170, marks=pytest.mark.long),
-        # one whose leaving would let another fall, at once and after an impact
+        # a corner whose separation would let another fall, at once and after an impact
         pytest.param(841, marks=pytest.mark.long),
         pytest.param(1333, marks=pytest.mark.long),
-        # one that can neither pull nor leave
+        # a corner that can neither pull nor separate
         pytest.param(1312, marks=pytest.mark.long),
-        # ends that re-pinning would throw up, or hold and let go, without end
+        # ends that re-pinning would throw up, or hold and release, endlessly
         pytest.param(8453, marks=pytest.mark.long),
         pytest.param(8031, marks=pytest.mark.long),
         pytest.param(5943, marks=pytest.mark.long),
         pytest.param(18451, marks=pytest.mark.long),
-        14161,  # one of a squat body out of flight
-        # what stops a slip throws the corner up, ever less
+        14161,  # a corner of a squat body after flight
+        # impulses that stop a slip throw the corner up, ever less
         pytest.param(18363, marks=pytest.mark.long),
-        219,  # not where the block leans nowhere
-        # a corner that pulls, and without which the other one of its body falls
+        219,  # not for an upright block
+        # a corner that pulls, and without which the other corner falls
         pytest.param(19677, marks=pytest.mark.long),
         pytest.param(19797, marks=pytest.mark.long),
-        # bodies that fall with their ground from the first instant
+        # bodies that fall with their ground from the start
         pytest.param(13059, marks=pytest.mark.long),
         pytest.param(14323, marks=pytest.mark.long),
-        # one that bounces under a tie a million times stiffer than its weight
+        # a body that bounces under a tie a million times stiffer than its weight
         pytest.param(15785, marks=pytest.mark.long),
-        # an end that waits for its pad as the base of the body below catches up
+        # an end that waits for its pad while the body below approaches
         pytest.param(17543, marks=pytest.mark.long),
     ],
 )
@@ -451,8 +451,8 @@ def test_changes_of_contact_beside_ties_come_to_an_end(number):
     assert ended in ("completed", "overturned", "toppled")
 
 
-def out_of_balance(system: rf.System) -> float:
-    """Return greatest force at rest that nothing holds, over the weight, and moments likewise."""
+def imbalance_at_rest(system: rf.System) -> float:
+    """Return the greatest unbalanced force at rest over the weight, or moment likewise."""
     chain, poses = system.setting.standing.chain, system.setting.standing.rest
     loads, weights = chain.link_loads(poses), chain.weights(poses)
     upward = [
@@ -477,12 +477,12 @@ def test_ties_of_any_stiffness_between_bodies_on_pads_let_them_find_rest(stiffne
         for on, to in (("0.2 m", "2.355 m"), ("0.59 m", "0.21 m"))
     ]  # fmt: skip
     system = rf.System(rf.Stack(upper, lower, interfaces=[pads]), pads, *ties)
-    assert out_of_balance(system) < 1e-12 * max(1.0, stiffness / 1e8)
+    assert imbalance_at_rest(system) < 1e-12 * max(1.0, stiffness / 1e8)
 
 
 @pytest.mark.parametrize("offset", ["0 m", "2 cm"])
-def test_pads_too_soft_to_bear_a_body_beside_links_that_hold_nothing_are_refused(offset):
-    # upright the forces balance, and at a lean where they do the bodies would fall on
+def test_too_soft_pads_with_slack_links_are_refused(offset):
+    # forces balance upright, and at an unstable lean
     soft, firm = PADS.replace(frequency_ratio=3), PADS
     slack = TIE.replace(slack="5 cm")
     stack = rf.Stack(BLOCK, rf.Block(width="2 m", height="1 m", mass="4 t"), interfaces=[soft],
@@ -499,17 +499,17 @@ def test_links_that_begin_to_answer_within_a_step_are_found_on_the_way(number):
     upper = chain.bodies[0].part.body
     turned = 0.5 * math.atan2(upper.right, upper.height)
     places = [share * turned for share in (0.001, 0.02, 0.3, -0.02, -0.3)]
-    for rotation, stands in zip(places, chain.curve(places), strict=True):
-        assert stands is not None
-        assert sum(one.state.rotation for one in stands) == pytest.approx(rotation, rel=1e-9)
-        moments = chain.moments(stands)  # one couple holds all
+    for rotation, poses in zip(places, chain.curve(places), strict=True):
+        assert poses is not None
+        assert sum(one.state.rotation for one in poses) == pytest.approx(rotation, rel=1e-9)
+        moments = chain.moments(poses)  # a single couple holds all bodies
         assert max(moments) - min(moments) < 1e-6 * chain.weight * upper.height
 
 
 @pytest.mark.parametrize("times", [1e3, 1e6, 1e9])
-def test_a_bar_that_is_as_good_as_rigid_carries_what_balance_leaves_to_it(times):
-    beside, half = 0.05, 0.5
-    upper = rf.Block(width="1 m", height="2 m", mass="2 t", eccentricity=f"{beside} m")
+def test_nearly_rigid_bar_carries_the_force_required_by_equilibrium(times):
+    offset, half = 0.05, 0.5
+    upper = rf.Block(width="1 m", height="2 m", mass="2 t", eccentricity=f"{offset} m")
     lower = rf.Block(width="1.2 m", height="1 m", mass="3 t")
     weight = 2e3 * 9.80665
     bar = rf.Restrainer(
@@ -518,8 +518,8 @@ def test_a_bar_that_is_as_good_as_rigid_carries_what_balance_leaves_to_it(times)
     )  # fmt: skip
     stiff = rf.TwoSpringSupport(frequency_ratio=300, damping_ratio=0.1)
     rest = rf.System(rf.Stack(upper, lower, interfaces=[stiff]), stiff, bar).equilibrium()
-    # the corner above the bar stays: the other pad is relieved of W e / 2 b, which the bar takes
-    share = float(rest.static_restrainer_force[0]) / (-weight * beside / (2.0 * half))
+    # the corner above the bar stays: the bar takes W e / 2 b from the other pad
+    share = float(rest.static_restrainer_force[0]) / (-weight * offset / (2.0 * half))
     assert 0.0 < share < 1.0
     if times > 1e7:
         assert share == pytest.approx(1.0, rel=2e-3)
@@ -541,7 +541,7 @@ def test_bodies_that_stiff_ties_join_move_as_those_that_softer_ones_nearly_join(
         found = rf.System(stack, pads, bar).simulate(PULSE, duration="1 s", outputs=("energy",))
         assert imbalance(found) < 1e-6
         peaks.append(float(abs(found.rotation).max()))
-    # what is left shrinks as the compliance does
+    # the remainder is proportional to the compliance
     assert abs(peaks[2] - peaks[1]) < 0.5 * abs(peaks[1] - peaks[0]) < 0.01 * peaks[0]
 
 
@@ -551,7 +551,7 @@ def test_a_body_that_its_tie_lifts_off_its_pads_loads_them_no_more():
     assert held.held_left_reaction.item() == held.held_right_reaction.item() == 0.0
     assert held.base_moment.item() == 0.0
     assert held.held_contact_state.item() == ContactState.FLIGHT
-    # the couple holds what the tie pulls: mg along the vertical, about the centre of mass
+    # the couple balances the tie force: mg along the vertical, about the centre of mass
     assert held.restoring_moment.item() > 4e3 * 9.80665 * 0.5
 
 

@@ -1,4 +1,4 @@
-"""Stacks on rigid bases: how they start, what a run shows, and beside pads and soil."""
+"""Stacks on rigid bases: initial states, results, and comparison with pads and soil."""
 
 import math
 
@@ -35,8 +35,8 @@ GRAVITY = 9.80665
 FULL = int(ContactState.FULL)
 
 
-def on_rigid(upper, lower, **given):
-    return rf.System(rf.Stack(upper, lower, interfaces=[RIGID], **given), RIGID)
+def on_rigid(upper, lower, **options):
+    return rf.System(rf.Stack(upper, lower, interfaces=[RIGID], **options), RIGID)
 
 
 def shaken(peak: float, frequency: float = 1.0) -> rf.GroundMotion:
@@ -58,8 +58,8 @@ def test_a_stack_alone_stands_on_rigid_ground():
 
 
 @pytest.mark.filterwarnings("ignore::rockframe.errors.RockframeWarning")
-def test_a_corner_leaves_the_ground_while_the_bodies_above_are_apart_from_it():
-    """Nothing of them presses the lowest body, whose end lifts as its own force comes to zero."""
+def test_lowest_body_uplifts_at_its_own_threshold_below_airborne_bodies():
+    """They do not press the lowest body, whose end lifts when its own force vanishes."""
     stack = rf.Stack(
         rf.Block(width="0.6 m", height="0.34 m", mass="634 kg"),
         rf.Block(width="0.89 m", height="0.33 m", mass="2526 kg"),
@@ -69,7 +69,7 @@ def test_a_corner_leaves_the_ground_while_the_bodies_above_are_apart_from_it():
     pulse = rf.GroundMotion.sine_pulse(amplitude="33.7 m/s^2", frequency="2.57 Hz", cycles=3)
     run = rf.System(stack, RIGID).simulate(pulse, duration="0.46 s")
     assert int(run.status) == Status.COMPLETED
-    # on level ground it lifts alone when the ground acceleration is b/h g
+    # on level ground it uplifts alone at a ground acceleration of b/h g
     width, height = 0.95, 0.31
     alone = (run.event_kind == EventKind.UPLIFT) & (run.event_body == 3) & (run.event_time > 0.4)
     (time,) = run.event_time.values[alone.values]
@@ -77,38 +77,38 @@ def test_a_corner_leaves_the_ground_while_the_bodies_above_are_apart_from_it():
     assert 33.7 * abs(math.sin(omega * time)) == pytest.approx(GRAVITY * width / height, rel=1e-6)
 
 
-def together(upper, lower) -> float:
+def joint_uplift_acceleration(upper, lower) -> float:
     """Return the acceleration at which two centred blocks rock as one."""
     one, two = lower.si, upper.si
     moment = one.mass * one.half_height + two.mass * (2.0 * one.half_height + two.half_height)
     return GRAVITY * (one.mass + two.mass) * one.half_width / moment
 
 
-@pytest.mark.parametrize("way", [1.0, -1.0])
+@pytest.mark.parametrize("direction", [1.0, -1.0])
 @pytest.mark.parametrize(("upper", "lower", "first"), [(STATUE, PLINTH, 1), (HEAD, COLUMN, 2)])
-def test_what_rocks_first(upper, lower, first, way):
+def test_first_uplift_of_a_two_body_stack_matches_closed_form(upper, lower, first, direction):
     alone = GRAVITY * upper.si.half_width / upper.si.half_height
-    starts = alone if first == 1 else together(upper, lower)
-    assert starts < (together(upper, lower) if first == 1 else alone)
+    starts = alone if first == 1 else joint_uplift_acceleration(upper, lower)
+    assert starts < (joint_uplift_acceleration(upper, lower) if first == 1 else alone)
     system = on_rigid(upper, lower)
     assert system.simulate(shaken(0.999 * starts), duration="0.5 s").sizes["event"] == 0
-    found = system.simulate(shaken(1.01 * way * starts), duration="0.35 s")
+    found = system.simulate(shaken(1.01 * direction * starts), duration="0.35 s")
     assert found.event_kind[0] == EventKind.UPLIFT
     assert found.event_body[0] == first
-    # the ground goes to one side, the body to the other
+    # the ground moves to one side, the body to the other
     moved = found.body_rotation.to_numpy()[first - 1]
-    assert -way * moved[np.abs(moved) > 0.0][0] > 0.0
+    assert -direction * moved[np.abs(moved) > 0.0][0] > 0.0
     when = float(found.event_time[0])
     assert 1.01 * math.sin(2.0 * math.pi * when) == pytest.approx(1.0, abs=1e-6)
 
 
-def test_bodies_that_rock_together_do_as_one():
-    whole = rf.Block(width="0.5 m", height="3.4 m", mass="3.4 t")
+def test_jointly_rocking_bodies_equal_one_block():
+    united = rf.Block(width="0.5 m", height="3.4 m", mass="3.4 t")
     parts = [rf.Block(width="0.5 m", height="1.7 m", mass="1.7 t")] * 2
     motion = shaken(1.1 * GRAVITY * 0.5 / 3.4, 0.5)
-    one = rf.System(whole).simulate(motion, duration="2 s", accuracy="reference")
+    one = rf.System(united).simulate(motion, duration="2 s", accuracy="reference")
     both = on_rigid(*parts).simulate(motion, duration="2 s", accuracy="reference")
-    until = float(one.event_time[1])  # the first impact may part them
+    until = float(one.event_time[1])  # they may separate at the first impact
     early = one.time < until
     assert np.abs(one.rotation)[early].max() > 1e-3
     assert np.abs((both.rotation - one.rotation)[early]).max() < 1e-9
@@ -234,29 +234,29 @@ def test_more_links_than_can_be_numbered_are_refused():
 @pytest.mark.parametrize(
     ("number", "ends"),
     [
-        (19, "0.43 s"),  # bounces that die while friction on soil lets go and holds in turn
-        (5998, "0.32 s"),  # a corner whose blows break the hold of friction on pads
-        # two corners that throw one another up
+        (19, "0.43 s"),  # decaying bounces while friction on soil slips and sticks in turn
+        (5998, "0.32 s"),  # a corner whose impacts overcome friction on pads
+        # two corners that throw each other up
         pytest.param(483, "0.32 s", marks=pytest.mark.long),
-        (1284, "0.02 s"),  # a base that holds, whatever that takes, under one that slips
-        (5678, "0.6 s"),  # two slips that start at once, one against the other
-        # a corner that bears again as the one let go would not press
+        (1284, "0.02 s"),  # a base held by any force under one that slips
+        (5678, "0.6 s"),  # two opposite slips that start at once
+        # a corner that bears again because the released one would not press
         pytest.param(5699, "1.1 s", marks=pytest.mark.long),
-        (6897, "0.89 s"),  # two corners of which either pulls, and comes back, without the other
-        (7278, "0.302 s"),  # a pad's end that waits on as a corner elsewhere parts
-        # a hold that parts a corner below, instead of lifting its own end
+        (6897, "0.89 s"),  # two corners of which either pulls, and returns, without the other
+        (7278, "0.302 s"),  # an end of a pad that keeps waiting while a corner elsewhere separates
+        # a hold that separates a corner below instead of lifting its own end
         pytest.param(1234, "1.845 s", marks=pytest.mark.long),
-        (6946, "0.73 s"),  # a base that slips on, the more it is held back
-        # a slip that ends, by which a corner is held without pressing
+        (6946, "0.73 s"),  # a base that slips more the more it is held back
+        # an ending slip after which a corner is held without pressing
         pytest.param(9364, "1.188 s", marks=pytest.mark.long),
-        (3184, "0.24 s"),  # a corner held without pressing, which is not the one that lets go
-        (2972, "2.4 s"),  # bounces on a pad, by rounding
-        (5525, "0.22 s"),  # corners of one base, closed by rates that are rounding
-        (4018, "0.08 s"),  # a corner that comes back from below its base
+        (3184, "0.24 s"),  # a corner held without pressing, other than the one that separates
+        (2972, "2.4 s"),  # bounces on a pad by rounding
+        (5525, "0.22 s"),  # corners of one base, closed by rates of rounding
+        (4018, "0.08 s"),  # a corner that returns from below its base
     ],
 )
-def test_changes_of_contact_come_to_an_end(number, ends):
-    """Each stopped before it, by changes of contact without end, or by a force that is none."""
+def test_contact_changes_terminate(number, ends):
+    """Each run once stopped early, by endless contact changes or an inadmissible force."""
     system, motion = draw_scene("stack of mixed bases", np.random.default_rng(number))
     with plain_python():
         found = system.simulate(
@@ -266,22 +266,22 @@ def test_changes_of_contact_come_to_an_end(number, ends):
 
 
 @pytest.mark.filterwarnings("ignore::rockframe.errors.RockframeWarning")
-def test_a_slip_does_not_begin_against_its_force():
-    """A drum, nearly weightless, would slip and stick in turn: it tilts as it begins to slip."""
+def test_light_drum_does_not_alternate_between_slip_and_stick():
+    """A nearly weightless drum would slip and stick in turn: it tilts as it begins to slip."""
     system, motion = draw_column(142)
     found = system.simulate(motion, duration="0.12 s", outputs=None)
     assert int(found.status) == Status.COMPLETED
 
 
-@pytest.mark.long  # of six and of seven drums, whose equations no other test compiles
+@pytest.mark.long  # no other test compiles the equations of six and seven drums
 @pytest.mark.filterwarnings("ignore::rockframe.errors.RockframeWarning")
 @pytest.mark.parametrize(
     ("number", "ends"),
     [(217, "1.4 s"), (163, "0.32 s"), (315, "0.65 s")],
     ids=["a set far from that with sticking", "small bounces of drums that slip", "a slip jams"],
 )
-def test_columns_that_stopped_go_on(number, ends):
-    """Of eleven closed corners and more, of slips that small bounces end, and without forces."""
+def test_drum_columns_complete_previously_failing_runs(number, ends):
+    """Eleven closed corners and more, slips ended by small bounces, and missing forces."""
     system, motion = draw_column(number)
     found = system.simulate(
         motion, duration=ends, accuracy="standard", outputs=None, second_look=False
@@ -291,8 +291,8 @@ def test_columns_that_stopped_go_on(number, ends):
 
 @pytest.mark.filterwarnings("ignore::rockframe.errors.RockframeWarning")
 @pytest.mark.parametrize(("number", "ends", "most"), [(684, "0.5 s", 1e-5), (434, "0.53 s", 1e-3)])
-def test_what_begins_to_slip_has_the_velocity_that_it_had(number, ends, most):
-    """A body that is held begins to slip as another one, on pads, changes its contact."""
+def test_onset_of_slip_preserves_velocity(number, ends, most):
+    """A held body begins to slip when another body on pads changes its contact."""
     system, motion = draw_scene("stack of mixed bases", np.random.default_rng(number))
     with plain_python():
         found = system.simulate(
@@ -303,8 +303,8 @@ def test_what_begins_to_slip_has_the_velocity_that_it_had(number, ends, most):
 
 @pytest.mark.long
 @pytest.mark.filterwarnings("ignore::rockframe.errors.RockframeWarning")
-def test_what_has_lost_its_hold_is_not_held_at_the_bound():
-    """It cannot slip with the corners that bear; two of them part."""
+def test_body_beyond_friction_limit_is_not_held():
+    """It cannot slip with the bearing corners; two of them separate."""
     system, motion = draw_scene("stack of mixed bases", np.random.default_rng(4852))
     found = system.simulate(motion, duration="1.31 s", accuracy="fast", outputs=None)
     assert int(found.status) == Status.COMPLETED
@@ -312,7 +312,7 @@ def test_what_has_lost_its_hold_is_not_held_at_the_bound():
 
 @pytest.mark.filterwarnings("ignore::rockframe.errors.RockframeWarning")
 def test_a_pad_that_catches_up_creates_no_energy():
-    """The end that it meets does not slide by a force that has a corner below pull."""
+    """The end in contact does not slide by a force that makes a corner below pull."""
     system, motion = draw_scene("stack of mixed bases", np.random.default_rng(1835))
     with plain_python():
         found = system.simulate(
@@ -322,8 +322,8 @@ def test_a_pad_that_catches_up_creates_no_energy():
 
 
 @pytest.mark.filterwarnings("ignore::rockframe.errors.RockframeWarning")
-def test_a_stack_that_falls_as_one_lands_as_one():
-    """Its ground falls faster four times; rates of 1e-29 had the upper block bounce once."""
+def test_stack_in_joint_free_fall_lands_without_rotation():
+    """The ground falls faster four times; rates of 1e-29 once made the upper block bounce."""
     system, motion = draw_scene("stack of mixed bases", np.random.default_rng(326))
     with plain_python():
         found = system.simulate(
@@ -348,8 +348,8 @@ def test_several_sets_at_a_change_of_slip_are_no_modes_of_an_impact():
     system, motion = draw_scene("stack of mixed bases", np.random.default_rng(38))
     with plain_python():
         found = system.simulate(motion, accuracy="fast", outputs=None, second_look=False)
-    told = "and there are 2 ways to bear and to slip then: taken is one with body 1 in full"
-    assert told in found.attrs["cautions"]
+    caution = "and there are 2 ways to bear and to slip then: taken is one with body 1 in full"
+    assert caution in found.attrs["cautions"]
     assert found.attrs["impacts_of_several_modes"] == 0
 
 
@@ -361,8 +361,8 @@ def test_several_sets_at_a_change_of_slip_are_no_modes_of_an_impact():
         ((0.5, 20.0), 0.76, None, "leading-corner"),
     ],
 )
-def test_no_landing_on_pads_upon_a_light_body_gives_energy(plate, ground, joint, rule):
-    """What would stop the body that lands is more than the light one can hand on to the ground."""
+def test_landing_on_pads_above_a_light_body_creates_no_energy(plate, ground, joint, rule):
+    """The impulse that stops the landing body exceeds what the light one can transmit."""
     height, mass = plate
     lower = rf.Block(width="0.6 m", height=f"{height} m", mass=f"{mass} kg")
     pads = rf.TwoSpringSupport(
@@ -385,8 +385,8 @@ def test_no_landing_on_pads_upon_a_light_body_gives_energy(plate, ground, joint,
     ("mass", "rule", "seed"),
     [(10.0, "leading-corner", 11), (40.0, "contact-state", 3), (10.0, "centre", 6)],
 )
-def test_no_hold_out_of_flight_upon_a_light_body_gives_energy(mass, rule, seed):
-    """What would stop the slip of a body that lands is more than a light one below can hand on."""
+def test_holding_after_flight_above_a_light_body_creates_no_energy(mass, rule, seed):
+    """The impulse that stops the slip of a landing body exceeds what a light one can transmit."""
     tall = rf.Block(width="1.6 m", height="5.7 m", mass="1500 kg")
     plate = rf.Block(width="2.2 m", height="1.5 m", mass=f"{mass} kg")
     pads = rf.TwoSpringSupport(frequency_ratio=90, damping_ratio=0.0)
@@ -404,8 +404,8 @@ def test_no_hold_out_of_flight_upon_a_light_body_gives_energy(mass, rule, seed):
 
 @pytest.mark.filterwarnings("ignore::rockframe.errors.RockframeWarning")
 @pytest.mark.parametrize("number", [122, 123])
-def test_bodies_that_come_to_rest_as_they_slip_give_no_energy(number):
-    """What ends bounces may pull; friction does not act then, since it would drive the slip."""
+def test_coming_to_rest_while_slipping_creates_no_energy(number):
+    """The end of bounces may pull; friction does not act then, since it would drive the slip."""
     system, motion = draw_scene("stack of mixed bases", np.random.default_rng(number))
     run = system.simulate(motion, outputs=["energy"], accuracy="fast", second_look=False)
     taken = (run.impact_energy + run.repinning_energy).to_numpy()
@@ -414,8 +414,8 @@ def test_bodies_that_come_to_rest_as_they_slip_give_no_energy(number):
 
 @pytest.mark.filterwarnings("ignore::rockframe.errors.RockframeWarning")
 @pytest.mark.parametrize("seed", [2, 9])
-def test_a_short_slip_that_a_blow_has_turned_round_ends_against_its_friction(seed):
-    """On pads beneath two heavy bodies: friction of the sense it had would drive it."""
+def test_short_slip_reversed_by_an_impact_is_opposed_by_friction(seed):
+    """On pads beneath two heavy bodies: friction in its former direction would drive the slip."""
     upper = rf.Block(width="0.9 m", height="3 m", mass="1860 kg")
     middle = rf.Block(width="1.2 m", height="3.9 m", mass="315 kg")
     plate = rf.Block(width="1.7 m", height="0.95 m", mass="6 kg")
@@ -458,8 +458,8 @@ def sliding_upon_a_landing_body(restitution):
 
 
 @pytest.mark.parametrize("restitution", [0.001, 0.3])
-def test_ends_that_land_beneath_a_body_that_slips_keep_what_their_restitution_leaves(restitution):
-    """Whatever the body above takes of the blow, which is more or less than as it stood."""
+def test_landing_beneath_a_sliding_body_obeys_restitution(restitution):
+    """Whatever share of the impulse the body above takes, more or less than before."""
     system, events = sliding_upon_a_landing_body(restitution)
     base, landings = system.on_base(1), 0
     for i in np.flatnonzero(events.kind == IMPACT):
@@ -472,15 +472,15 @@ def test_ends_that_land_beneath_a_body_that_slips_keep_what_their_restitution_le
             speed, _ = end_speed(base, left, before)
             comes = not base.base.is_held(contact, left) and speed < -1e-3
             if comes and abs(base.base.level(left, line, ())) < 1e-9:
-                kept = end_speed(base, left, after)[0] / speed
-                assert kept == pytest.approx(restitution, abs=1e-5), events.time[i]
+                ratio = end_speed(base, left, after)[0] / speed
+                assert ratio == pytest.approx(restitution, abs=1e-5), events.time[i]
                 landings += 1
     assert landings > 20
 
 
 @pytest.mark.parametrize("restitution", [0.001, 0.3])
-def test_a_body_upon_one_that_lands_gets_no_more_than_friction_gives(restitution):
-    """Where no corner closes all impulses are rounding: these are no reason to stop a slip."""
+def test_impulse_on_a_body_above_a_landing_obeys_friction_limit(restitution):
+    """Where no corner closes, all impulses are rounding and must not stop a slip."""
     system, events = sliding_upon_a_landing_body(restitution)
 
     def velocity(mode, state):
@@ -501,8 +501,8 @@ def test_a_body_upon_one_that_lands_gets_no_more_than_friction_gives(restitution
 
 @pytest.mark.parametrize("sense", [1.0, -1.0])
 @pytest.mark.parametrize("above", [1.0, -1.0])
-def test_a_short_slip_ends_without_energy_of_what_slips_above(sense, above):
-    """It ends at once: friction above, which presses less or more until then, has no time."""
+def test_ending_a_short_slip_loses_only_its_own_energy(sense, above):
+    """The slip ends at once, before friction above can change."""
     light = rf.Block(width="1 m", height="0.65 m", mass="25 kg")
     joint, pads = rf.RigidGround(friction=0.2), rf.TwoSpringSupport(
         frequency_ratio=60, damping_ratio=0.1, friction=0.6
@@ -513,8 +513,10 @@ def test_a_short_slip_ends_without_energy_of_what_slips_above(sense, above):
     mode = system.with_slip_sense(system.with_slip_sense(mode, 0, above), 1, sense)
     rate = system.coordinates() + system.horizontal_of(1)
     state[system.coordinates() + system.horizontal_of(0)], state[rate] = above, 1e-6 * sense
-    had = system.energies(mode, state).kinetic
+    kinetic = system.energies(mode, state).kinetic
     new = system.end_short_slip(1, mode, state, Ground(0.0, 0.0), memory)
     assert not system.body_mode(new, 1).slides
-    assert had - system.energies(new, state).kinetic == pytest.approx(memory[IMPACT_LOSS], rel=1e-3)
+    assert kinetic - system.energies(new, state).kinetic == pytest.approx(
+        memory[IMPACT_LOSS], rel=1e-3
+    )
     assert 0.0 < memory[IMPACT_LOSS] < 1e-12

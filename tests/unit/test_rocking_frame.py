@@ -1,4 +1,4 @@
-"""Columns under a beam: the part, the scene, and what runs, figures and files make of it."""
+"""Columns under a beam: the part, the scene, runs, figures and files."""
 
 import json
 import pickle
@@ -36,7 +36,7 @@ def test_rocking_frame_attributes_and_round_trips():
 
 
 @pytest.mark.parametrize(
-    ("column", "given", "words"),
+    ("column", "arguments", "words"),
     [
         (PIER, {"columns": 1}, "columns must be 2 or more, got 1"),
         (PIER, {"columns": 2.5}, "whole number"),
@@ -45,9 +45,9 @@ def test_rocking_frame_attributes_and_round_trips():
         (PIER.replace(eccentricity="0.1 m"), {}, "eccentricity of 0.1 m"),
     ],
 )
-def test_invalid_rocking_frame_is_refused(column, given, words):
+def test_invalid_rocking_frame_is_refused(column, arguments, words):
     with pytest.raises(ComponentError, match=words):
-        rf.RockingFrame(column, **({"columns": 3, "beam_mass": "200 t"} | given))
+        rf.RockingFrame(column, **({"columns": 3, "beam_mass": "200 t"} | arguments))
 
 
 @pytest.mark.parametrize(
@@ -82,9 +82,9 @@ def test_unsupported_parts_with_a_rocking_frame_are_refused():
     pads = rf.TwoSpringSupport(frequency_ratio=20, damping_ratio=0.1)
     with pytest.raises(AssemblyError, match="a RockingFrame stands on rigid ground"):
         rf.System(BENT, pads)
-    for given in ({"at": "0.1 m"}, {"depth": "1 m"}):
+    for changes in ({"at": "0.1 m"}, {"depth": "1 m"}):
         with pytest.raises(AssemblyError, match="goes along the axis of each column"):
-            rf.System(BENT, rf.Tendon(stiffness="1 MN/m", **given))
+            rf.System(BENT, rf.Tendon(stiffness="1 MN/m", **changes))
     load = rf.Load(at=("0 m", "1 m"), vertical="1 kN")
     with pytest.raises(AssemblyError, match="nothing else but tendons"):
         rf.System(BENT, load)
@@ -143,8 +143,8 @@ def test_point_acceleration_peaks_match_histories_at_zero_rotation():
         outputs=("point_vertical_acceleration",),
         points={"foot": ("-0.4 m", "0 m"), "top": ("0.1 m", "2.5 m"), "beam": ("0 m", "3.5 m")},
     )  # fmt: skip
-    seen = abs(run.point_vertical_acceleration).max("time")
-    np.testing.assert_allclose(run.peak_point_vertical_acceleration, seen, rtol=2e-3)
+    sampled = abs(run.point_vertical_acceleration).max("time")
+    np.testing.assert_allclose(run.peak_point_vertical_acceleration, sampled, rtol=2e-3)
 
 
 def test_frame_run_balances_energy_and_survives_netcdf_round_trip(tmp_path):
@@ -172,7 +172,7 @@ def test_frame_statics_match_closed_form():
     system = rf.System(BENT)
     weight, half = 380e3 * system.options.gravity, 0.8
     at = system.moment_rotation(["0.05 rad"])
-    # the weight of the beam rises twice as fast as that of the columns
+    # the beam rises twice as fast as the centres of the columns
     lever = (180.0 + 2.0 * 200.0) / 380.0 * np.hypot(0.8, 4.8)
     angle = np.arctan(1.0 / 6.0)
     assert at.restoring_moment.item() == pytest.approx(weight * lever * np.sin(angle - 0.05))
@@ -193,13 +193,13 @@ def test_columns_and_beam_are_drawn_at_their_positions():
         for k, one in enumerate(others, 1):
             np.testing.assert_allclose(one, first + np.array([7.0 * k, 0.0]), atol=1e-12)
         assert np.ptp(beam[:2, 1]) == pytest.approx(0.0, abs=1e-12)
-        # it lies on the higher of the upper corners
+        # the beam rests on the higher of the upper corners
         assert beam[0, 1] == pytest.approx(first[2:, 1].max(), abs=1e-12)
         deck, head = (run.isel(point=k, time=place) for k in (0, 1))
         for name, point, rest in (("deck", deck, (0.0, 11.0)), ("head", head, (-6.2, 9.6))):
             shown = [point.point_horizontal_displacement, point.point_vertical_displacement]
-            drawn = moving.builder.points_at(at, np.array([moving.points[name]]))[0]
-            np.testing.assert_allclose(drawn - rest, shown, atol=1e-9)
+            points = moving.builder.points_at(at, np.array([moving.points[name]]))[0]
+            np.testing.assert_allclose(points - rest, shown, atol=1e-9)
     upright = Placement(geometry_of(rf.System(BENT).assembly), UPRIGHT, Restraint.CONTACT_STATE)
     assert len(LayoutBuilder(upright.geometry).layout_at(upright).contacts) == 3
     rf.plot.scene(rf.System(BENT))

@@ -1,4 +1,4 @@
-"""Single runs at "fast" are made a second time, and tell what is not sure of them."""
+"""Single runs at "fast" are repeated with a finer step to estimate their error."""
 
 import math
 import warnings
@@ -28,12 +28,12 @@ PULSE = rf.GroundMotion.sine_pulse("-3 m/s^2", "1 Hz")
 
 
 def fast(system=SYSTEM, motion=PULSE, **arguments):
-    """Run at "fast"; give the result, and what it warns of."""
-    with warnings.catch_warnings(record=True) as said:
+    """Run at "fast"; return the result and its warnings."""
+    with warnings.catch_warnings(record=True) as caught:
         warnings.simplefilter("always")
-        given = {"free_vibration": "4 s", "outputs": None, **arguments}
-        run = system.simulate(motion, accuracy="fast", **given)
-    return run, [str(one.message) for one in said]
+        plan = {"free_vibration": "4 s", "outputs": None, **arguments}
+        run = system.simulate(motion, accuracy="fast", **plan)
+    return run, [str(one.message) for one in caught]
 
 
 def noise():
@@ -43,16 +43,16 @@ def noise():
 
 
 def test_reliable_fast_run_is_silent_and_estimates_peak_error():
-    run, said = fast()
-    assert said == []
+    run, messages = fast()
+    assert messages == []
     substeps = run.attrs["solver_substeps"]
     finer = rf.Accuracy(substeps=substeps + math.ceil(ADDED_STEPS * substeps))
     again = SYSTEM.simulate(PULSE, free_vibration="4 s", outputs=None, accuracy=finer)
     exact = SYSTEM.simulate(PULSE, free_vibration="4 s", outputs=None, accuracy="reference")
-    told = float(run.peak_error_estimate)
-    assert told == SAFETY * abs(float(run.peak_rotation) - float(again.peak_rotation))
-    assert abs(float(run.peak_rotation) - float(exact.peak_rotation)) <= told
-    assert told < 1e-3 * float(run.peak_rotation)
+    estimate = float(run.peak_error_estimate)
+    assert estimate == SAFETY * abs(float(run.peak_rotation) - float(again.peak_rotation))
+    assert abs(float(run.peak_rotation) - float(exact.peak_rotation)) <= estimate
+    assert estimate < 1e-3 * float(run.peak_rotation)
 
 
 @pytest.mark.parametrize(
@@ -64,22 +64,22 @@ def test_reliable_fast_run_is_silent_and_estimates_peak_error():
     ],
 )
 def test_inaccurate_fast_run_warns(number, ratio, words):
-    """One verdict and two peaks among 384 scales of a noise on six pads."""
+    """One verdict and two peaks among 384 scales of noise on six pads."""
     pads = rf.TwoSpringSupport(frequency_ratio=ratio, damping_ratio=0.1)
     system = rf.System(rf.Block.from_size(radius="2.5 m", slenderness=4.5, mass="20 t"), pads)
     motion = noise().scaled(float(np.linspace(0.4, 1.1, 64)[number]))
-    run, said = fast(system, motion, free_vibration=None)
+    run, messages = fast(system, motion, free_vibration=None)
     exact = system.simulate(motion, outputs=None, accuracy="reference")
     other = bool(run.overturned) != bool(exact.overturned)
     off = abs(float(run.peak_rotation) - float(exact.peak_rotation))
     assert other or off > MAX_PEAK_ERROR * float(exact.peak_rotation)
     assert other == (words == "the verdict is not sure")
-    assert any(words in one for one in said)
+    assert any(words in one for one in messages)
     assert words in run.attrs["cautions"]
-    assert float(run.energy_residual) < 0.01  # which tells nothing
-    # and without the second look it says nothing of it
-    _, said = fast(system, motion, free_vibration=None, second_look=False)
-    assert not any("not sure" in one for one in said)
+    assert float(run.energy_residual) < 0.01  # which does not reveal the error
+    # no warning without the second look
+    _, messages = fast(system, motion, free_vibration=None, second_look=False)
+    assert not any("not sure" in one for one in messages)
 
 
 def test_second_look_can_be_disabled_and_applies_only_to_fast(monkeypatch):
@@ -107,7 +107,7 @@ def base():
     return plan, compute_response(SYSTEM.assembly, plan).trajectory
 
 
-def told(base, first, second):
+def doubts_between(base, first, second):
     plan, run = base
     return list(doubts(SYSTEM.setting, plan, replace(run, **first), replace(run, **second)))
 
@@ -121,37 +121,40 @@ def test_second_look_messages(base):
     standing = {**STANDS, "peak_left": 0.0, "peak_right": 0.1}
     angle = SYSTEM.setting.overturning_angle
     falling = {**FALLS, "peak_left": 0.0, "peak_right": angle}
-    assert told(base, standing, standing) == []
-    # small impacts after the peak may differ, but not where the peak itself does
-    assert told(base, standing, {**standing, "impact_count": 99}) == []
-    [other] = told(base, standing, {**standing, "impact_count": 99, "peak_right": 0.1006})
+    assert doubts_between(base, standing, standing) == []
+    # small impacts after the peak may differ if the peak does not
+    assert doubts_between(base, standing, {**standing, "impact_count": 99}) == []
+    [other] = doubts_between(base, standing, {**standing, "impact_count": 99, "peak_right": 0.1006})
     assert "the verdict is not sure" in other
-    assert told(base, CUT, standing) == []
-    [cut] = told(base, standing, CUT)
+    assert doubts_between(base, CUT, standing) == []
+    [cut] = doubts_between(base, standing, CUT)
     assert cut.startswith("with 1.5 times as many steps the run cannot be finished: the verdict")
-    verdict, peak = told(base, standing, falling)
+    verdict, peak = doubts_between(base, standing, falling)
     assert "the body overturns to the right at 2.000 s: the verdict is not sure" in verdict
     assert f"its peak rotation is {angle:.4g} rad, not 0.1: it is not sure" in peak
-    assert told(base, falling, falling) == []
-    assert told(base, falling, {**falling, "impact_count": 99, "overturning_time": 2.001}) == []
-    assert told(base, falling, {**falling, "overturning_time": 2.02}) == []
-    assert told(base, falling, {**falling, "impact_count": 99, "overturning_time": 2.02})
+    assert doubts_between(base, falling, falling) == []
+    assert (
+        doubts_between(base, falling, {**falling, "impact_count": 99, "overturning_time": 2.001})
+        == []
+    )
+    assert doubts_between(base, falling, {**falling, "overturning_time": 2.02}) == []
+    assert doubts_between(base, falling, {**falling, "impact_count": 99, "overturning_time": 2.02})
     for other in ({"overturning_time": 2.5}, {"overturning_direction": -1}):
-        [late] = told(base, falling, {**falling, **other})
+        [late] = doubts_between(base, falling, {**falling, **other})
         assert "the verdict is not sure" in late
     near, nearer = ({**standing, "peak_right": share * angle} for share in (0.97, 0.98))
-    [close] = told(base, near, nearer)
+    [close] = doubts_between(base, near, nearer)
     assert "stands, its peak 98 % of the overturning angle: the verdict is not sure" in close
 
 
 @pytest.mark.parametrize(
-    ("off", "said"), [(0.9 * MAX_PEAK_ERROR / SAFETY, 0), (1.1 * MAX_PEAK_ERROR / SAFETY, 1)]
+    ("off", "count"), [(0.9 * MAX_PEAK_ERROR / SAFETY, 0), (1.1 * MAX_PEAK_ERROR / SAFETY, 1)]
 )
-def test_large_estimated_peak_error_warns(base, off, said):
+def test_large_estimated_peak_error_warns(base, off, count):
     first, second = (
         {**STANDS, "peak_left": 0.0, "peak_right": at} for at in (0.1, 0.1 + 0.1 * off)
     )
-    assert len(told(base, first, second)) == said
+    assert len(doubts_between(base, first, second)) == count
     _, run = base
     error = peak_error(replace(run, **first), replace(run, **second))
     assert error == pytest.approx(SAFETY * 0.1 * off)
@@ -164,5 +167,5 @@ def test_returning_block_is_judged_by_its_margin_beyond_the_angle(base):
     beyond, farther, short = (
         {**came_back, "peak_right": share * angle} for share in (1.2, 1.201, 0.99)
     )
-    assert told(base, beyond, farther) == []
-    assert told(base, beyond, {**short, **STANDS})
+    assert doubts_between(base, beyond, farther) == []
+    assert doubts_between(base, beyond, {**short, **STANDS})

@@ -1,4 +1,4 @@
-"""The local page: who is answered, what it says of wrong values, the scene that it hands out."""
+"""The local page: access, reports of wrong values, and the scene file for download."""
 
 import re
 import subprocess
@@ -46,7 +46,7 @@ def server(record):
 
 @pytest.fixture
 def ask(server):
-    def asked(path, method="GET", body=None, **headers):
+    def request(path, method="GET", body=None, **headers):
         host = headers.pop("Host", f"127.0.0.1:{server.server_port}")
         connection = HTTPConnection("127.0.0.1", server.server_port, timeout=120)
         connection.putrequest(method, path, skip_host=True)
@@ -58,7 +58,7 @@ def ask(server):
         connection.close()
         return found
 
-    return asked
+    return request
 
 
 def test_page_shows_the_verdict_of_the_run(ask):
@@ -70,7 +70,7 @@ def test_page_shows_the_verdict_of_the_run(ask):
     assert verdict.startswith("Overturned")
     assert verdict in text
     assert "script-src 'self'" in headers["Content-Security-Policy"]
-    assert not re.search(r"https?://", text)  # nothing from elsewhere
+    assert not re.search(r"https?://", text)  # no external resources
     player = ask("/player?motion=sine_pulse&width=0.6&height=3&amplitude=6&frequency=1")
     assert player[0] == 200
     assert '<canvas id="scene"' in player[1]
@@ -81,11 +81,11 @@ def test_page_shows_the_verdict_of_the_run(ask):
 @pytest.mark.parametrize("base", BASES)
 @pytest.mark.parametrize("motion", ["sine_pulse", "cosine_pulse", "example", "record"])
 def test_downloaded_scene_file_reproduces_the_scene(ask, record, tmp_path, base, motion):
-    given = {"base": base, "motion": motion, "scale": "1.7", "soil_damping": "0.33"}
+    choices = {"base": base, "motion": motion, "scale": "1.7", "soil_damping": "0.33"}
     path = tmp_path / "scene.toml"
-    path.write_text(ask(f"/scene.toml?{urlencode(given)}")[1], encoding="utf-8")
+    path.write_text(ask(f"/scene.toml?{urlencode(choices)}")[1], encoding="utf-8")
     found = read_scene(str(path))
-    choice, faults = read_choice(given, record)
+    choice, faults = read_choice(choices, record)
     assert faults == []
     assert found.system == choice.system()
     assert found.motion == choice.ground_motion(record)
@@ -128,7 +128,7 @@ def test_unknown_paths_return_404(ask, path):
     assert ask(path)[0] == 404
 
 
-@pytest.mark.parametrize(("query", "said"), [
+@pytest.mark.parametrize(("query", "words"), [
     ("width=abc", "Width: found &#x27;abc&#x27;; expected a number from 0.1 to 5 m"),
     ("width=", "Width: found &#x27;&#x27;"),
     ("height=-3", "Height: found &#x27;-3&#x27;; expected a number from 0.2 to 20 m"),
@@ -141,11 +141,11 @@ def test_unknown_paths_return_404(ask, path):
     ("width=<script>", "&lt;script&gt;"),
     ("base=soil&width=5&height=20&soil_stiffness=0.1&mass=200", "soft"),
 ])  # fmt: skip
-def test_invalid_values_are_reported_on_the_page(ask, query, said):
+def test_invalid_values_are_reported_on_the_page(ask, query, words):
     for path in ("/", "/outcome"):
         status, text, _ = ask(f"{path}?{query.replace('<', '%3C').replace('>', '%3E')}")
         assert status == 200
-        assert said in text
+        assert words in text
         assert "Traceback" not in text
         assert "<script>" not in text
 
@@ -158,7 +158,7 @@ def test_internal_error_is_reported_without_a_traceback(ask, server, monkeypatch
     text = ask("/outcome?width=1.01")[1]
     assert "please report it" in text
     assert "Zero" not in text
-    assert "ZeroDivisionError" in capsys.readouterr().err  # for whoever mends it
+    assert "ZeroDivisionError" in capsys.readouterr().err  # for debugging
     assert ask("/?" + "&".join(f"a{k}=1" for k in range(60)))[0] == 400
 
 

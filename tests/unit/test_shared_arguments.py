@@ -1,4 +1,4 @@
-"""Arguments that several functions take: in signatures, docstrings and refusals."""
+"""Arguments shared by several functions: signatures, docstrings and refusals."""
 
 import inspect
 import pickle
@@ -143,15 +143,15 @@ def test_analyses_have_the_shared_argument_names_and_defaults(function):
 
 
 def test_sweep_and_simulate_signatures_match_declarations():
-    """Both write their arguments out: one takes any further name, the other any outputs."""
+    """Both list their arguments explicitly: one takes any further name, the other any outputs."""
     of_sweep = inspect.signature(rf.sweep).parameters
     for name, one in declared_arguments(SweepArguments).items():
         assert of_sweep[name].default == one.default
     assert set(SWEEP_ARGUMENT_NAMES) < set(of_sweep)
-    of_run = inspect.signature(rf.System.simulate).parameters
-    only_of_a_run = {"self", "motion", "certify", "second_look"}
-    assert set(get_type_hints(RunArguments)) == set(of_run) - only_of_a_run
-    assert all(of_run[name].default == DEFAULTS.get(name) for name in (*LENGTH, *COURSE))
+    run_arguments = inspect.signature(rf.System.simulate).parameters
+    only_of_runs = {"self", "motion", "certify", "second_look"}
+    assert set(get_type_hints(RunArguments)) == set(run_arguments) - only_of_runs
+    assert all(run_arguments[name].default == DEFAULTS.get(name) for name in (*LENGTH, *COURSE))
 
 
 def test_a_misspelt_argument_of_a_sweep_is_no_axis():
@@ -167,13 +167,13 @@ def test_shared_argument_values_are_checked_by_all_analyses():
         ({"overturning": "halt"}, "overturning"),
         ({"accuracy": "exact"}, "accuracy"),
     ):
-        for function, given in (
+        for function, arguments in (
             (rf.rocking_spectrum, {"periods": ([2.0], "s")}),
             (rf.overturning_spectrum, {"periods": ([2.0], "s"), "scale": [1.0, 2.0]}),
             (rf.sweep, {"scale": [1.0]}),
         ):
             with pytest.raises(StudyError, match=words):
-                function(SYSTEM, PULSE, **given, **wrong)
+                function(SYSTEM, PULSE, **arguments, **wrong)
     with pytest.raises(StudyError, match="duration or free_vibration, not both"):
         rf.rocking_spectrum(
             SYSTEM, PULSE, periods=([2.0], "s"), duration="3 s", free_vibration="1 s"

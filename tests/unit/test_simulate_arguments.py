@@ -1,4 +1,4 @@
-"""Arguments of a run: what is refused, how long it is, what is said before it."""
+"""Arguments of a run: refusals, durations, warnings."""
 
 import itertools
 import json

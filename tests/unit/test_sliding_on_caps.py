@@ -1,4 +1,4 @@
-"""A block that slides on its cap, and a cap on its soil: a stack of two, with the cap's names."""
+"""A block that slides on its cap, and a cap on its soil, as a stack of two bodies."""
 
 import matplotlib.pyplot as plt
 import numpy as np
@@ -55,8 +55,8 @@ def test_block_and_cap_equal_a_two_body_stack(pads, soil):
 
 
 def test_high_friction_prevents_sliding():
-    # but for what a change of one body's held point leaves of the other's slip: that is stopped
-    # by a force, not by the same impulse
+    # small slips remain: when the held point of one body changes, a force stops the other body's
+    # slip, not the same impulse
     run, held = (on_cap(one, one).simulate(PUSH, **PLAN) for one in (1e6, None))
     assert held.attrs["model"] == "coupled"
     assert run.attrs["model"] == "coupled-sliding"

@@ -1,4 +1,4 @@
-"""Soil and cap as values: what they hold, what they refuse, the way to text and back."""
+"""Soil and cap as values: contents, refusals, representations."""
 
 import json
 import math
@@ -99,8 +99,8 @@ def test_cap_width_defaults_to_block_width():
     block = rf.Block(width="2.4 m", height="9.6 m", mass="50 t")
     soil = rf.WinklerSoil(**SOIL)
     own = rf.System(block, rf.CushionCap(**CAP), soil)
-    told = rf.System(block, rf.CushionCap(**CAP, width="2.4 m"), soil)
-    assert own.equilibrium().drop_attrs().identical(told.equilibrium().drop_attrs())
+    explicit = rf.System(block, rf.CushionCap(**CAP, width="2.4 m"), soil)
+    assert own.equilibrium().drop_attrs().identical(explicit.equilibrium().drop_attrs())
     wider = rf.System(block, rf.CushionCap(**CAP, width="3 m"), soil)
     assert wider.equilibrium().soil_settlement < own.equilibrium().soil_settlement
 
@@ -116,7 +116,7 @@ def test_mass_and_inertia_of_a_solid_cap():
         assert cap.inertia_at(5.0) == pytest.approx(inertia, rel=1e-14)
 
 
-# what is refused -----------------------------------------------------------------------------
+# refusals -----------------------------------------------------------------------------
 
 
 @pytest.mark.parametrize("bad", ["9 MN/m", "9e6 N/m", "9 MN/m^3", "9 N", "9 kg/m^2", "9 m", "9"])
@@ -289,7 +289,7 @@ def test_extreme_caps_are_refused_or_give_finite_statics(size, refused):
 
 
 def test_block_and_cap_combine_mass_centre_and_inertia():
-    """Summed up over point masses that have the mass, the centre and the inertia of each part."""
+    """Sum over point masses with the mass, the centre and the inertia of each part."""
     block = rf.Block(width="2 m", height="6 m", mass="30 t", centre_of_mass=("2.5 m", "0.2 m"))
     cap = rf.CushionCap(height="0.8 m", mass="20 t", width="3 m")
     body = rf.System(block, cap, rf.WinklerSoil(**SOIL)).assembly.setting.body

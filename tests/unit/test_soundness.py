@@ -1,4 +1,4 @@
-"""What is said of a run whose energies do not balance."""
+"""Warnings of runs whose energies do not balance."""
 
 from dataclasses import replace
 
@@ -23,7 +23,7 @@ SYSTEM, MOTION = Scene().system, Scene().motion
 STOOD = RunSummary(False, 0.1, (0.5,), course=(1.0, 0.2))
 
 
-def said(accuracy, residual, other=STOOD, base=STOOD, system=SYSTEM):
+def caution_of(accuracy, residual, other=STOOD, base=STOOD, system=SYSTEM):
     plan = plan_run(
         system.assembly,
         MOTION,
@@ -38,8 +38,8 @@ def said(accuracy, residual, other=STOOD, base=STOOD, system=SYSTEM):
     summary = replace(compute_response(system.assembly, plan).trajectory, energy_residual=residual)
     tried = []
 
-    def run(beside):
-        tried.append(beside.accuracy)
+    def run(neighbour):
+        tried.append(neighbour.accuracy)
         return other
 
     return energy_caution(system.assembly, plan, summary, lambda: base, run), tried
@@ -47,8 +47,8 @@ def said(accuracy, residual, other=STOOD, base=STOOD, system=SYSTEM):
 
 @pytest.mark.parametrize("accuracy", ["standard", "reference", 1e-6])
 def test_adaptive_runs_are_judged_by_energy_balance(accuracy):
-    assert said(accuracy, 0.5 * MAX_ADAPTIVE_RESIDUAL) == (None, [])
-    text, tried = said(accuracy, 2.0 * MAX_ADAPTIVE_RESIDUAL)
+    assert caution_of(accuracy, 0.5 * MAX_ADAPTIVE_RESIDUAL) == (None, [])
+    text, tried = caution_of(accuracy, 2.0 * MAX_ADAPTIVE_RESIDUAL)
     assert "out of balance by 0.002 of the largest" in text
     assert "this is no solution; repeat the run with a tighter tolerance" in text
     assert not tried
@@ -59,9 +59,9 @@ def test_doubtful_fixed_step_runs_are_compared_with_an_adaptive_run(accuracy):
     standard = rf.Accuracy(rtol=2e-8)
     rigid = rf.System(SYSTEM.parts.block)
     for system, limit in ((SYSTEM, DOUBTFUL_RESIDUAL_ON_SPRINGS), (rigid, DOUBTFUL_RESIDUAL)):
-        assert said(accuracy, 0.5 * limit, system=system) == (None, [])
-        assert said(accuracy, 2.0 * limit, system=system) == (None, [standard])
-    text, tried = said(accuracy, 2.0 * MAX_FIXED_STEP_RESIDUAL)
+        assert caution_of(accuracy, 0.5 * limit, system=system) == (None, [])
+        assert caution_of(accuracy, 2.0 * limit, system=system) == (None, [standard])
+    text, tried = caution_of(accuracy, 2.0 * MAX_FIXED_STEP_RESIDUAL)
     assert text.endswith("this is no solution; repeat the run with accuracy='standard'")
     assert not tried
 
@@ -75,15 +75,15 @@ def test_doubtful_fixed_step_runs_are_compared_with_an_adaptive_run(accuracy):
     ],
 )
 def test_different_adaptive_course_is_reported(other, words):
-    text, _ = said("fast", 2.0 * DOUBTFUL_RESIDUAL_ON_SPRINGS, other)
+    text, _ = caution_of("fast", 2.0 * DOUBTFUL_RESIDUAL_ON_SPRINGS, other)
     assert words in text
     assert "repeat the run with accuracy='standard'" in text
 
 
 def test_unfinished_run_is_not_judged():
     cut_off = RunSummary(None, 0.1)
-    assert said("fast", 1.0, base=cut_off) == (None, [])
-    assert said("fast", 2.0 * DOUBTFUL_RESIDUAL_ON_SPRINGS, other=cut_off)[0] is None
+    assert caution_of("fast", 1.0, base=cut_off) == (None, [])
+    assert caution_of("fast", 2.0 * DOUBTFUL_RESIDUAL_ON_SPRINGS, other=cut_off)[0] is None
 
 
 def test_run_out_of_balance_warns_and_has_a_caution(monkeypatch):
@@ -94,7 +94,7 @@ def test_run_out_of_balance_warns_and_has_a_caution(monkeypatch):
 
 
 def test_fast_run_with_wrong_course_warns():
-    """Sub-steps of a tenth of the period, in a scene in which every impact multiplies errors."""
+    """Sub-steps of a tenth of the period, in a scene whose impacts multiply errors."""
     *_, scene = scenes("restraint and separation rules, finite and small", 4)
     with pytest.warns(SolverWarning, match="another course, which"):
         fast = scene.run("fast")
@@ -106,7 +106,7 @@ def test_fast_run_with_wrong_course_warns():
 
 @pytest.mark.parametrize("scale", [1.00001, 1.001, 1.01])
 def test_barely_rocking_block_does_not_warn(scale):
-    """Just beyond g b/h a few fixed steps hold all the motion there is."""
+    """Just beyond g b/h all motion takes place within a few fixed steps."""
     system = rf.System(rf.Block(width="1 m", height="4 m", mass="10 t"))
     motion = rf.GroundMotion.sine_pulse(f"{scale * 9.80665 / 4} m/s^2", "1 Hz")
     run = system.simulate(motion, free_vibration="2 s", accuracy="fast", outputs=None)
@@ -116,12 +116,14 @@ def test_barely_rocking_block_does_not_warn(scale):
 
 def test_imperceptible_motion_is_still_compared():
     still = replace(STOOD, peak=1e-6, peak_share=1e-5)
-    assert said("standard", 2.0 * MAX_ADAPTIVE_RESIDUAL, base=still) == (None, [])
+    assert caution_of("standard", 2.0 * MAX_ADAPTIVE_RESIDUAL, base=still) == (None, [])
     assert (
-        said("fast", 2.0 * MAX_FIXED_STEP_RESIDUAL, base=still, other=replace(still, peak=2e-6))[0]
+        caution_of(
+            "fast", 2.0 * MAX_FIXED_STEP_RESIDUAL, base=still, other=replace(still, peak=2e-6)
+        )[0]
         is None
     )
     for other in (STOOD, replace(STOOD, overturned=True, time=1.0)):
-        text, tried = said("fast", 2.0 * MAX_FIXED_STEP_RESIDUAL, base=still, other=other)
+        text, tried = caution_of("fast", 2.0 * MAX_FIXED_STEP_RESIDUAL, base=still, other=other)
         assert "adaptive steps give another course" in text
         assert len(tried) == 1

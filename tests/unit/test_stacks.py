@@ -1,4 +1,4 @@
-"""Stacks: the part, its scenes, and what a run shows of its bodies."""
+"""Stacks: the part, its scenes, and results of its bodies."""
 
 import pickle
 
@@ -34,36 +34,36 @@ def run():
 
 
 def test_stack_attributes_and_round_trips():
-    made = rf.Stack(STATUE, PLINTH, interfaces=[JOINT], offsets=["2 cm"])
-    assert made.bodies == (STATUE, PLINTH)
-    assert made.interfaces == (JOINT,)
-    assert [one.to("cm").magnitude for one in made.offsets] == [2.0]
+    stack = rf.Stack(STATUE, PLINTH, interfaces=[JOINT], offsets=["2 cm"])
+    assert stack.bodies == (STATUE, PLINTH)
+    assert stack.interfaces == (JOINT,)
+    assert [one.to("cm").magnitude for one in stack.offsets] == [2.0]
     drums = (PLINTH, PLINTH, PLINTH)
     assert rf.Stack(*drums, interfaces=JOINT) == rf.Stack(*drums, interfaces=[JOINT, JOINT])
     with pytest.raises(UnitsError, match=r"offsets\[0\] needs a length with a unit"):
-        made.replace(offsets=([0.1], "m"))
-    assert rf.Stack.from_dict(made.to_dict()) == made
-    assert pickle.loads(pickle.dumps(made)) == made  # noqa: S301
-    assert made != STACK
-    assert len({made, STACK, rf.Stack(STATUE, PLINTH, interfaces=[JOINT])}) == 2
-    assert "offsets=['0.02 m']" in repr(made)
+        stack.replace(offsets=([0.1], "m"))
+    assert rf.Stack.from_dict(stack.to_dict()) == stack
+    assert pickle.loads(pickle.dumps(stack)) == stack  # noqa: S301
+    assert stack != STACK
+    assert len({stack, STACK, rf.Stack(STATUE, PLINTH, interfaces=[JOINT])}) == 2
+    assert "offsets=['0.02 m']" in repr(stack)
     with pytest.raises(AttributeError, match="immutable"):
-        made.bodies = ()
+        stack.bodies = ()
 
 
 def test_a_stack_is_changed_by_copying():
-    made = rf.Stack(STATUE, PLINTH, interfaces=[JOINT], offsets=["2 cm"])
-    assert made.replace() == made
-    assert made.replace(offsets=None) == STACK
-    assert made.replace(bodies=(STATUE, PLINTH.replace(mass="3 t"))).bodies[1] != PLINTH
+    stack = rf.Stack(STATUE, PLINTH, interfaces=[JOINT], offsets=["2 cm"])
+    assert stack.replace() == stack
+    assert stack.replace(offsets=None) == STACK
+    assert stack.replace(bodies=(STATUE, PLINTH.replace(mass="3 t"))).bodies[1] != PLINTH
     other = JOINT.replace(frequency_ratio=70)
-    assert made.replace(interfaces=[other]).interfaces == (other,)
+    assert stack.replace(interfaces=[other]).interfaces == (other,)
     with pytest.raises(TypeError, match="interface"):
-        made.replace(interface=[other])
+        stack.replace(interface=[other])
 
 
 @pytest.mark.parametrize(
-    ("bodies", "given", "words"),
+    ("bodies", "options", "words"),
     [
         ((STATUE,), {"interfaces": []}, "2 to 12 bodies, got 1"),
         ((STATUE, PLINTH), {"interfaces": []}, "1 interfaces between them, got 0"),
@@ -74,9 +74,9 @@ def test_a_stack_is_changed_by_copying():
         ((STATUE, PLINTH), {"interfaces": [JOINT], "offsets": ["0.21 m"]}, "reaches 0.46 m"),
     ],
 )
-def test_invalid_stack_is_refused(bodies, given, words):
+def test_invalid_stack_is_refused(bodies, options, words):
     with pytest.raises(ComponentError, match=words):
-        rf.Stack(*bodies, **given)
+        rf.Stack(*bodies, **options)
 
 
 @pytest.mark.parametrize(
@@ -173,7 +173,7 @@ def test_event_body_is_the_body_whose_contact_changes(run):
 
 
 def test_overturning_of_a_lower_body_overturns_the_stack():
-    # a slender column under a squat block: that would need a far greater rotation itself
+    # a slender column under a squat block, whose own overturning angle is much greater
     squat = rf.Block(width="1 m", height="0.8 m", mass="2 t")
     column = rf.Block(width="1 m", height="6 m", mass="9 t")
     system = rf.System(rf.Stack(squat, column, interfaces=[JOINT]), GROUND)
@@ -182,13 +182,17 @@ def test_overturning_of_a_lower_body_overturns_the_stack():
     at_end = np.abs(run.body_rotation[:, -1].to_numpy())
     assert at_end[0] < 0.5 * float(run.overturning_angle)
     assert run.event_body[-1] == 1
-    stands = system.simulate(PULSE, free_vibration="1 s", second_look=False)
-    angle = np.arctan2(0.5, (2.0 * 6.4 + 9.0 * 3.0) / 11.0)  # of both as one
-    share = float(stands.peak_body_rotation[1]) / angle
-    assert float(stands.peak_relative_rotation) == pytest.approx(share, rel=1e-6)
-    assert f" of body 1, a lower body {100.0 * share:.3g} % of its own;" in stands.attrs["verdict"]
-    onwards = system.simulate(duration="0.5 s", initial=stands, second_look=False)
-    assert float(onwards.peak_relative_rotation) >= abs(float(stands.body_rotation[1, -1])) / angle
+    standing = system.simulate(PULSE, free_vibration="1 s", second_look=False)
+    angle = np.arctan2(0.5, (2.0 * 6.4 + 9.0 * 3.0) / 11.0)  # of both as one body
+    share = float(standing.peak_body_rotation[1]) / angle
+    assert float(standing.peak_relative_rotation) == pytest.approx(share, rel=1e-6)
+    assert (
+        f" of body 1, a lower body {100.0 * share:.3g} % of its own;" in standing.attrs["verdict"]
+    )
+    onwards = system.simulate(duration="0.5 s", initial=standing, second_look=False)
+    assert (
+        float(onwards.peak_relative_rotation) >= abs(float(standing.body_rotation[1, -1])) / angle
+    )
 
 
 def test_offsets_lean_a_stack_at_rest():
@@ -275,7 +279,7 @@ def test_extreme_mass_ratios_have_finite_frequencies(masses):
     blocks = [rf.Block(width="1 m", height="2 m", mass=f"{one} t") for one in masses]
     pads = rf.TwoSpringSupport(frequency_ratio=20.0, damping_ratio=0.1)
     model = rf.System(rf.Stack(*blocks, interfaces=[pads, pads]), pads).setting.compile()
-    # of the body above by itself, whose pads bear it alone
+    # of the upper body alone on its pads
     alone = rf.System(blocks[0], pads).setting.compile()
     assert alone.fastest_frequency * (1.0 - 1e-9) <= model.fastest_frequency < np.inf
 

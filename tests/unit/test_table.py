@@ -1,4 +1,4 @@
-"""Results as tables: heads with units, words for flags, labels that tell runs apart."""
+"""Results as tables: headings with units, words for flags, labels that distinguish runs."""
 
 import runpy
 import sys
@@ -151,7 +151,7 @@ def test_histories_and_events_are_separate_tables(runs):
 
 
 def test_joined_histories_end_where_their_runs_end(runs):
-    """However they were joined: what only fills them up is no row."""
+    """Padding of joined runs is not a row, however they were joined."""
     bare = [one.drop_dims("event") for one in runs]
     joined = xr.concat(bare, "scale", data_vars="all", join="outer").assign_coords(scale=SCALES)
     table = rf.table(joined, "histories")
@@ -176,8 +176,8 @@ def test_values_of_only_some_runs_are_missing_in_others(runs):
 
 
 def test_table_survives_csv_round_trip(study, tmp_path):
-    for given, index in ((study, "scale"), (rf.concat([study] * 2, "case"), ["case", "scale"])):
-        table = rf.table(given)
+    for dataset, index in ((study, "scale"), (rf.concat([study] * 2, "case"), ["case", "scale"])):
+        table = rf.table(dataset)
         table.to_csv(tmp_path / "study.csv")
         again = pd.read_csv(tmp_path / "study.csv", index_col=index)
         pd.testing.assert_frame_equal(again, table, check_exact=True)
@@ -203,7 +203,7 @@ def test_frequencies_spectra_and_measures_become_tables():
 
 
 def test_variables_of_other_dimensions_have_separate_rows():
-    """Rows are added, and not multiplied by dimensions that have nothing to do with them."""
+    """Rows are added, not multiplied by unrelated dimensions."""
     labels = {"quantile": [0.1, 0.9], "scale": np.arange(5.0), "response_level": [0.1, 0.2, 0.3]}
     curves = xr.Dataset(
         {
@@ -223,7 +223,7 @@ def test_variables_of_other_dimensions_have_separate_rows():
 
 
 def test_invalid_table_arguments_are_refused(runs, study):
-    for given, options, words in (
+    for dataset, options, words in (
         ("run.nc", (), "open a file with xr.open_dataset first"),
         (3, (), "expected a dataset"),
         ([], (), "found no runs"),
@@ -234,7 +234,7 @@ def test_invalid_table_arguments_are_refused(runs, study):
         ([runs[0], study], (), "different dimensions"),
     ):
         with pytest.raises(SchemaError, match=words):
-            rf.table(given, *options)
+            rf.table(dataset, *options)
     with pytest.raises(ComponentError, match="'scalars' or 'histories' or 'events'"):
         rf.table(runs[0], "everything")
 

@@ -35,17 +35,17 @@ def test_moments_of_a_central_tendon_match_closed_form():
 
 @pytest.mark.parametrize("base", ["pads", "soil"])
 def test_uplift_angle_includes_loads_on_the_base(base):
-    """An end lifts where the base line has turned by the settlement under weight and load."""
-    given = {"pads": rf.TwoSpringSupport(stiffness="40 MN/m", damping_ratio=0.1),
+    """An end lifts when the rotation of the base reaches the settlement under weight and load."""
+    bases = {"pads": rf.TwoSpringSupport(stiffness="40 MN/m", damping_ratio=0.1),
              "soil": rf.WinklerSoil(stiffness="40 MPa", damping_ratio=0.1)}  # fmt: skip
     floor = rf.Load(at=("0 m", "8 m"), vertical="400 kN")
-    system = rf.System(BLOCK, given[base], floor)
-    angle = math.asin((WEIGHT + 4e5) / (2.0 * 40e6) / 1.0)  # both have 80 MN/m in all
+    system = rf.System(BLOCK, bases[base], floor)
+    angle = math.asin((WEIGHT + 4e5) / (2.0 * 40e6) / 1.0)  # both have 80 MN/m in total
     assert float(system.equilibrium().uplift_angle) == pytest.approx(angle, rel=1e-9)
     around = angle * np.array([-1.0001, -0.9999, 0.9999, 1.0001])
     contact = system.moment_rotation((around, "rad")).held_contact_state.values
     assert (contact != 0).tolist() == [True, False, False, True]
-    sides = rf.System(BLOCK, given[base], floor.replace(horizontal="20 kN"))
+    sides = rf.System(BLOCK, bases[base], floor.replace(horizontal="20 kN"))
     assert float(sides.equilibrium().uplift_angle) == pytest.approx(angle, rel=1e-9)
 
 
@@ -111,23 +111,23 @@ def test_links_of_all_kinds_share_compiled_code(base):
         for links in ((tie,), (load,), (wall,), (wall, load, tie))
     ]
     assert len({structure_of(system) for system in systems}) == 1
-    # each has the states of its own law: four of a tie, two of a wall, one of a load
+    # states of each law: four of a tie, two of a wall, one of a load
     assert [one.modes() / systems[1].modes() for one in systems] == [4, 1, 2, 8]
 
 
 def test_work_of_a_load_is_potential_energy_with_restrainers():
     slack = rf.Restrainer(on=("-1 m", "6 m"), to=("-3 m", "6 m"), stiffness="1 MN/m", slack="9 m")
     with plain_python():
-        alone, beside = (
+        without, combined = (
             rf.System(BLOCK, LOAD, *links).simulate(PULSE, duration="0.8 s", outputs=("energy",))
             for links in ((), (slack,))
         )
-    assert float(abs(alone.potential_energy).max()) > 1.0
-    np.testing.assert_allclose(beside.potential_energy, alone.potential_energy, atol=1e-6)
+    assert float(abs(without.potential_energy).max()) > 1.0
+    np.testing.assert_allclose(combined.potential_energy, without.potential_energy, atol=1e-6)
 
 
 def test_a_mass_at_a_point_is_a_part_of_the_body():
-    # a mass in the block's centre, which has no inertia of its own
+    # a point mass in the block's centre, without inertia
     heavy = BLOCK.replace(
         mass=f"{float(BLOCK.mass.m_as('kg')) + 5e3!r} kg", shape_factor=None,
         inertia=f"{float(BLOCK.si.inertia)!r} kg*m^2",

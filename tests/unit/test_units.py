@@ -1,4 +1,4 @@
-"""What the unit boundary lets in, what it refuses, and what it says then."""
+"""Units of arguments: accepted spellings, refusals, and messages."""
 
 import math
 import multiprocessing
@@ -29,7 +29,7 @@ def make_cap(**changed):
     return rf.CushionCap(**{"height": "1 m", "density": "2 t/m^3", "depth": "4 m", **changed})
 
 
-# every dimensional argument of the library: maker, name, words for it, unit, an accepted value
+# every dimensional argument: maker, name, its description, unit, an accepted value
 DIMENSIONAL = [
     (make_block, "width", "length", "m", "2 m"),
     (make_block, "height", "length", "m", "8 m"),
@@ -60,7 +60,7 @@ MUST_BE_POSITIVE = [
 
 @pytest.fixture(params=range(len(DIMENSIONAL)), ids=NAMES)
 def argument(request):
-    """Return one row of the table, whose value is accepted."""
+    """Return a row of the table."""
     maker, name, words, unit, good = DIMENSIONAL[request.param]
     maker(**{name: good})
     return maker, name, words, unit, good
@@ -147,7 +147,7 @@ def test_a_negative_damping_is_refused_and_a_zero_one_is_not():
     make_pads(damping_ratio=0)
 
 
-# traps, one by one -----------------------------------------------------------------------
+# single traps -----------------------------------------------------------------------
 
 
 @pytest.mark.parametrize(
@@ -422,8 +422,8 @@ def test_other_units_are_converted(maker, name, text, attribute, expected):
 def test_unit_conversion_adds_no_rounding_noise(unit):
     """The product of the floats 70 and 0.01 is 0.7000000000000001."""
     numbers = 70, 70.0, np.float64(70.0), np.array(70.0)  # some registries make arrays of numbers
-    for given in (f"70 {unit}", (70.0, unit), *(pint.Quantity(one, unit) for one in numbers)):
-        assert make_block(width=given) == make_block(width="0.7 m")
+    for value in (f"70 {unit}", (70.0, unit), *(pint.Quantity(one, unit) for one in numbers)):
+        assert make_block(width=value) == make_block(width="0.7 m")
     assert "width='0.7 m'" in repr(make_block(width=f"70 {unit}"))
     feet = make_block(height="8 ft", mass="2500 lb")  # 1 ft is 0.30479999999999996 m to pint
     assert (feet.si.height, feet.si.mass) == (2.4384, 1133.980925)

@@ -1,10 +1,18 @@
-"""Maps, spectra, probabilities, ensembles, sequences: labels, brute force, files."""
+"""Maps, spectra, probabilities, ensembles, sequences: labels, single runs, files."""
 
 import numpy as np
 import pytest
 import xarray as xr
 from scipy import stats
-from unit.studies.analysed import BLOCK, FAST, QUIET, SYSTEM, checked, motions, whole_analysis
+from unit.studies.small_analyses import (
+    BLOCK,
+    FAST,
+    QUIET,
+    SYSTEM,
+    assert_valid_file,
+    complete_analysis,
+    motions,
+)
 
 import rockframe as rf
 from rockframe.errors import ComponentError, SchemaError, StudyError
@@ -13,7 +21,7 @@ from rockframe.studies.probability import rank_parameters
 
 @pytest.fixture
 def analysis():
-    return whole_analysis()
+    return complete_analysis()
 
 
 # maps and spectra ----------------------------------------------------------------------------
@@ -23,7 +31,7 @@ def test_overturning_map_has_labels_and_reproduces_its_cases(tmp_path):
     pulse = rf.GroundMotion.sine_pulse("-3 m/s^2", "2 Hz")
     options = {"amplitude": ([3, 6, 12], "m/s^2"), "frequency": (["1 Hz", "2 Hz"]), **FAST}
     found = rf.overturning_map(SYSTEM, pulse, **options)
-    assert checked(found, tmp_path)
+    assert assert_valid_file(found, tmp_path)
     assert found.impacts_before_overturning.dims == ("amplitude", "frequency")
     assert (found.amplitude.units, found.frequency.units) == ("m s^-2", "Hz")
     alone = rf.case(found, amplitude="6 m/s^2", frequency="2 Hz")
@@ -41,7 +49,7 @@ def test_rocking_spectrum_equals_single_runs_of_resized_blocks(tmp_path):
     found = rf.rocking_spectrum(
         SYSTEM, motions(), periods=([2.0, 3.0], "s"), slenderness=[3, 5], **FAST
     )
-    assert checked(found, tmp_path)
+    assert assert_valid_file(found, tmp_path)
     assert found.peak_relative_rotation.dims == ("slenderness", "rocking_period", "motion")
     one = {"slenderness": 5.0, "rocking_period": 3.0, "motion": "seed 1"}
     case = rf.case(found, **one)
@@ -115,9 +123,9 @@ def test_an_overturning_spectrum_is_a_dynamic_analysis_of_each_block():
         sizes = found.isel(slenderness=0, rocking_period=place)
         width, height = (f"{sizes[name].item()!r} m" for name in ("width", "height"))
         system = rf.System(BLOCK.replace(width=width, height=height))
-        one = rf.incremental_dynamic_analysis(system, suite, scale=scales, **FAST)
-        assert np.array_equal(sizes.capacity_scale, one.capacity_scale[0], equal_nan=True)
-    pga = [one.peak_acceleration.m_as("m/s^2") for one in suite.values()]
+        dynamic = rf.incremental_dynamic_analysis(system, suite, scale=scales, **FAST)
+        assert np.array_equal(sizes.capacity_scale, dynamic.capacity_scale[0], equal_nan=True)
+    pga = [motion.peak_acceleration.m_as("m/s^2") for motion in suite.values()]
     assert found.capacity_intensity.units == "m s^-2"
     xr.testing.assert_allclose(
         found.capacity_intensity, found.capacity_scale * xr.DataArray(pga, dims="motion")
@@ -131,7 +139,7 @@ def test_overturning_probability_equals_share_of_single_runs(tmp_path):
     pulse = rf.GroundMotion.sine_pulse("4 m/s^2", "1.5 Hz")
     spread = {"width": ("normal", "0.5 m", "5 cm"), "scale": ("lognormal", 1.0, 0.4)}
     found = rf.probability_of_overturning(SYSTEM, pulse, spread=spread, cases=120, seed=3, **FAST)
-    assert checked(found, tmp_path)
+    assert assert_valid_file(found, tmp_path)
     falls = 0
     for k in range(0, 120, 10):
         block = BLOCK.replace(width=f"{found.width[k].item()!r} m")
@@ -183,11 +191,11 @@ def test_all_faulty_spreads_are_reported_at_once():
 
 def test_a_distribution_in_another_unit_is_refused():
     pulse = rf.GroundMotion.sine_pulse("4 m/s^2", "1.5 Hz")
-    given = {"scale": (stats.uniform(50, 100), "%"), "width": (stats.uniform(40, 20), "cm")}
+    spread = {"scale": (stats.uniform(50, 100), "%"), "width": (stats.uniform(40, 20), "cm")}
     with pytest.raises(StudyError, match="scale needs a distribution of pure ratios, got one in %"):
-        rf.probability_of_overturning(SYSTEM, pulse, spread=given)
+        rf.probability_of_overturning(SYSTEM, pulse, spread=spread)
     with pytest.raises(StudyError, match="width needs a distribution in m, got one in cm"):
-        rf.probability_of_overturning(SYSTEM, pulse, spread=given)
+        rf.probability_of_overturning(SYSTEM, pulse, spread=spread)
 
 
 def test_parameter_ranking_equals_first_order_sobol_indices():
@@ -226,7 +234,7 @@ def test_ensemble_bands_have_nominal_coverage():
             xr.DataArray(rng.random(count), dims="motion", name="share"),
             quantiles=[0.5], confidence=0.9,
         )  # fmt: skip
-        # the distribution function at a fixed place is a fixed number
+        # the distribution function at a fixed value is a fixed number
         below = found.ordered_value.values <= 0.4
         low = found.cumulative_probability_lower_bound.values[below]
         high = found.cumulative_probability_upper_bound.values[below]
@@ -250,7 +258,7 @@ def test_ensemble_bands_have_nominal_coverage():
 def test_ensemble_statistics_have_units_of_their_variable(tmp_path):
     runs = rf.sweep(SYSTEM, motions(), scale=[1.0, 3.0], **FAST)
     found = rf.ensemble_statistics(runs, "peak_rotation", pooled=["scale"])
-    assert checked(found, tmp_path)
+    assert assert_valid_file(found, tmp_path)
     assert found.ordered_value.units == found.quantile_value.units == "rad"
     assert found.ordered_value.values.tolist() == sorted(runs.peak_rotation.values.ravel())
     assert found.member_count.item() == 8
@@ -261,7 +269,7 @@ def test_ensemble_statistics_have_units_of_their_variable(tmp_path):
 
 
 def test_study_figures_draw_their_dataset_and_refuse_others(analysis):
-    drawn = {
+    figures = {
         "dynamic_analysis": analysis,
         "fragility": rf.fragility(analysis),
         "rocking_spectrum": rf.rocking_spectrum(
@@ -269,26 +277,26 @@ def test_study_figures_draw_their_dataset_and_refuse_others(analysis):
         ),
         "ensemble": rf.ensemble_statistics(analysis.isel(scale=-1)),
     }
-    for name, dataset in drawn.items():
+    for name, dataset in figures.items():
         figure = getattr(rf.plot, name)(dataset).figure
         figure.canvas.draw()
         with pytest.raises(SchemaError, match=f"rf.plot.{name} needs"):
             getattr(rf.plot, name)(xr.Dataset())
     with pytest.raises(SchemaError, match=r"rf\.plot\.fragility draws it"):
-        rf.plot.ensemble(drawn["fragility"])
+        rf.plot.ensemble(figures["fragility"])
 
 
 # sequences -----------------------------------------------------------------------------------
 
 
 def test_earthquake_sequence_equals_continued_runs(tmp_path):
-    """Each starts where the one before ended: the same as going on from its dataset."""
+    """Each earthquake starts where the one before ended, as a run continued from its dataset."""
     system = rf.System(BLOCK, rf.TwoSpringSupport(frequency_ratio=15, damping_ratio=0.1))
     one, two = list(motions().values())[:2]
     two = two.with_vertical(one.scaled(0.3))
-    given = {"first": [one, two.scaled(0.9), one], "short": [two.scaled(4.0)]}
-    found = rf.earthquake_sequences(system, given, pause="0.5 s", **QUIET)
-    assert checked(found, tmp_path)
+    sequences = {"first": [one, two.scaled(0.9), one], "short": [two.scaled(4.0)]}
+    found = rf.earthquake_sequences(system, sequences, pause="0.5 s", **QUIET)
+    assert assert_valid_file(found, tmp_path)
     assert found.peak_rotation.dims == ("sequence", "earthquake")
     assert np.isnan(found.peak_rotation.sel(sequence="short").values[1:]).all()
     assert found.overturning_earthquake.values.tolist() == [0, 1]
@@ -303,7 +311,7 @@ def test_earthquake_sequence_equals_continued_runs(tmp_path):
 @pytest.mark.parametrize("step", ["0.02 s", "0.004 s", "0.0125 s"])
 @pytest.mark.parametrize("first", [0, 1])
 def test_sequence_of_unlike_time_steps_equals_continued_runs(step, first):
-    """Each earthquake is the function of time that it is alone."""
+    """Each earthquake is the same function of time as in a single run."""
     coarse = motions()["seed 1"].resampled(step)
     vertical = motions()["seed 0"]
     several = [coarse, vertical.with_vertical(vertical.scaled(0.4))]
@@ -377,8 +385,8 @@ def test_sequence_reports_its_pause_in_whole_time_steps():
     """Pauses are whole time steps, and of each sequence its own."""
     fine = rf.GroundMotion.from_arrays((np.zeros(50), "m/s^2"), "4 ms")
     coarse = rf.GroundMotion.from_arrays((np.zeros(50), "m/s^2"), "10 ms")
-    given = {"coarse": [coarse, coarse], "fine": [fine, fine]}
-    found = rf.earthquake_sequences(SYSTEM, given, pause="4 ms", **QUIET)
+    sequences = {"coarse": [coarse, coarse], "fine": [fine, fine]}
+    found = rf.earthquake_sequences(SYSTEM, sequences, pause="4 ms", **QUIET)
     assert found.pause.dims == ("sequence",)
     assert found.pause.attrs["units"] == "s"
     np.testing.assert_allclose(found.pause, [0.01, 0.004], rtol=1e-12)

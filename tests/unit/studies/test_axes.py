@@ -1,4 +1,4 @@
-"""Axes that name what a system has without being given it."""
+"""Axes of parameters that a system implies, sizes of blocks, and units of labels."""
 
 import numpy as np
 import pint
@@ -15,16 +15,18 @@ PADS = rf.TwoSpringSupport(frequency_ratio=20, damping_ratio=0.1)
 
 def test_implied_rigid_ground_takes_a_restitution_axis() -> None:
     runs = rf.sweep(rf.System(BLOCK), PULSE, restitution=[0.8, 0.85], duration="4 s")
-    given = rf.System(BLOCK, rf.RigidGround(restitution=0.85)).simulate(PULSE, duration="4 s")
-    assert float(runs.peak_rotation.sel(restitution=0.85).squeeze()) == float(given.peak_rotation)
+    explicit = rf.System(BLOCK, rf.RigidGround(restitution=0.85)).simulate(PULSE, duration="4 s")
+    assert float(runs.peak_rotation.sel(restitution=0.85).squeeze()) == float(
+        explicit.peak_rotation
+    )
     again = rf.case(runs, restitution=0.85).simulate()
-    assert float(again.peak_rotation) == float(given.peak_rotation)
+    assert float(again.peak_rotation) == float(explicit.peak_rotation)
 
 
 def test_implied_rigid_ground_takes_a_friction_axis() -> None:
     runs = rf.sweep(rf.System(BLOCK), PULSE, friction=[0.1, 0.3], duration="4 s")
-    given = rf.System(BLOCK, rf.RigidGround(friction=0.1)).simulate(PULSE, duration="4 s")
-    assert float(runs.peak_slip.sel(friction=0.1).squeeze()) == float(given.peak_slip) > 0.0
+    explicit = rf.System(BLOCK, rf.RigidGround(friction=0.1)).simulate(PULSE, duration="4 s")
+    assert float(runs.peak_slip.sel(friction=0.1).squeeze()) == float(explicit.peak_slip) > 0.0
 
 
 def test_explicit_parts_take_precedence_over_implied_ground() -> None:
@@ -117,7 +119,7 @@ def test_case_label_without_unit_raises_with_an_example():
 
 
 def test_arrays_are_converted_from_their_units_attribute() -> None:
-    """Of ratios it was left out, and 70 % were 70."""
+    """The unit of ratios was once ignored, so that 70 % became 70."""
     system = rf.System(BLOCK, PADS)
     percent = xr.DataArray([20.0, 70.0], attrs={"units": "%"})
     runs = rf.sweep(system, PULSE, scale=percent, duration="2 s")
@@ -126,8 +128,11 @@ def test_arrays_are_converted_from_their_units_attribute() -> None:
     assert runs.damping_ratio.values.tolist() == [0.2, 0.7]
     widths = xr.DataArray([60.0, 70.0], attrs={"units": "cm"})
     narrow = rf.System(rf.Block(width="0.5 m", height="3 m", mass="2 t"))
-    for given in ({"width": widths}, {"cases": {"width": widths}}):
-        assert rf.sweep(narrow, PULSE, **given, duration="2 s").width.values.tolist() == [0.6, 0.7]
+    for arguments in ({"width": widths}, {"cases": {"width": widths}}):
+        assert rf.sweep(narrow, PULSE, **arguments, duration="2 s").width.values.tolist() == [
+            0.6,
+            0.7,
+        ]
 
     def tower(base: object) -> rf.System:
         return rf.System(rf.Block(width=base, height="3 m", mass="2 t"))  # pyright: ignore[reportArgumentType]
@@ -145,16 +150,16 @@ def test_conflicting_units_of_an_array_are_refused() -> None:
     widths = xr.DataArray([60.0, 70.0], attrs={"units": "cm"})
     percent = xr.DataArray([20.0, 70.0], attrs={"units": "%"})
     wrong = "has the unit '(cm|%)', but '(m|1)' is given with it"
-    for given in (
+    for arguments in (
         {"width": (widths, "m")}, {"cases": {"width [m]": widths}}, {"scale": (percent, "1")}
     ):  # fmt: skip
         with pytest.raises(StudyError, match=wrong):
-            rf.sweep(system, PULSE, **given, duration="2 s")
+            rf.sweep(system, PULSE, **arguments, duration="2 s")
 
 
 @pytest.mark.parametrize("name", ["width [m]", "scale [%]"])
 def test_masked_columns_are_refused(name: str) -> None:
-    """What is behind the mask took its place."""
+    """The hidden value was once used in its place."""
     system = rf.System(rf.Block(width="0.5 m", height="3 m", mass="2 t"))
     column = np.ma.array([0.5, 0.6], mask=[False, True])
     with pytest.raises(StudyError, match="has masked values; fill them in first"):
@@ -207,7 +212,7 @@ def test_dates_and_oversized_integers_are_refused_as_axis_values(values: np.ndar
 
 
 def test_converted_labels_are_read_in_their_own_unit() -> None:
-    """For a figure, say; they were taken for SI units, in which cases and measures are."""
+    """Converted labels, as for a figure, were once read as SI units."""
     system = rf.System(rf.Block(width="0.5 m", height="2 m", mass="400 kg"))
     motions = {f"{f} Hz": rf.GroundMotion.sine_pulse("1 m/s^2", f"{f} Hz") for f in (1, 2, 3)}
     size = {"height": ["2 m", "2.4 m"], "PGA": ["3 m/s^2", "6 m/s^2", "12 m/s^2"]}

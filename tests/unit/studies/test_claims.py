@@ -1,4 +1,4 @@
-"""Several jobs on one study: what one has claimed no other runs, unless it is dead."""
+"""Several jobs on one study: each claims its chunks, and claims of ended jobs expire."""
 
 import json
 import os
@@ -24,13 +24,13 @@ KNOWS_PROCESSES = module._start_of_process(os.getpid()) is not None
 
 
 @pytest.fixture(scope="module")
-def whole(tmp_path_factory):
+def complete(tmp_path_factory):
     folder = tmp_path_factory.mktemp("whole") / "study"
     return folder, run_sweep(folder)
 
 
 @pytest.fixture
-def another(tmp_path):
+def start_other_job(tmp_path):
     """Start another job on the study, and wait until it has run some chunks."""
     log = tmp_path / "log 0"
     job = start_sweep(tmp_path / "study", f"note_cases({str(log)!r})")
@@ -40,50 +40,50 @@ def another(tmp_path):
 
 
 @pytest.fixture
-def this(tmp_path, monkeypatch):
+def run_here(tmp_path, monkeypatch):
     """Run the study in this process too, noting its chunks."""
-    monkeypatch.setattr(Study, "job", Study.job)  # to be put back
+    monkeypatch.setattr(Study, "job", Study.job)  # so that it is restored
     note_cases(tmp_path / "log 1")
     return lambda: run_sweep(tmp_path / "study")
 
 
-def run_by(tmp_path):
+def runs_per_chunk(tmp_path):
     """Return how often each chunk was run, by the number of its first case."""
-    told = [path.read_text().splitlines() for path in tmp_path.glob("log *")]
-    return Counter(int(first) for each in told for first in each)
+    logs = [path.read_text().splitlines() for path in tmp_path.glob("log *")]
+    return Counter(int(first) for each in logs for first in each)
 
 
-def is_whole(folder, whole, *, killed=False):
-    assert stored_files(folder) == stored_files(whole[0])
-    assert as_bytes(rf.open_study(folder)) == as_bytes(whole[1])
-    # a job that is killed while it writes leaves its part of a file, hidden, which nobody reads
+def assert_complete(folder, complete, *, killed=False):
+    assert stored_files(folder) == stored_files(complete[0])
+    assert as_bytes(rf.open_study(folder)) == as_bytes(complete[1])
+    # a job that is killed while it writes leaves a hidden partial file, which is never read
     left = {path.name for path in folder.iterdir() if not (killed and path.match(".*.part"))}
-    assert left == {path.name for path in whole[0].iterdir()}
+    assert left == {path.name for path in complete[0].iterdir()}
 
 
 @pytest.mark.long
-def test_two_jobs_run_each_case_once(whole, tmp_path, another, this):
-    assert as_bytes(this()) == as_bytes(whole[1])  # each gives the whole
-    out, err = another.communicate(timeout=300)
+def test_two_jobs_run_each_case_once(complete, tmp_path, start_other_job, run_here):
+    assert as_bytes(run_here()) == as_bytes(complete[1])  # each returns all cases
+    out, err = start_other_job.communicate(timeout=300)
     assert out.strip() == "done", err
-    is_whole(tmp_path / "study", whole)
-    assert run_by(tmp_path) == Counter(range(0, CASES, 3))
-    assert len([*tmp_path.glob("log *")]) == 2  # both have had a part
+    assert_complete(tmp_path / "study", complete)
+    assert runs_per_chunk(tmp_path) == Counter(range(0, CASES, 3))
+    assert len([*tmp_path.glob("log *")]) == 2  # both have run some
 
 
 @pytest.mark.skipif(not KNOWS_PROCESSES, reason="the system does not tell of processes")
-def test_chunks_of_a_killed_job_are_taken_over(whole, tmp_path, another, this):
+def test_chunks_of_a_killed_job_are_taken_over(complete, tmp_path, start_other_job, run_here):
     with ThreadPoolExecutor(1) as pool:
-        going_on = pool.submit(this)
+        going_on = pool.submit(run_here)
         while not (going_on.done() or (tmp_path / "log 1").exists()):
             time.sleep(0.005)
-        another.kill()
-        another.communicate()
+        start_other_job.kill()
+        start_other_job.communicate()
         begun = time.monotonic()
         going_on.result(timeout=300)
-    assert time.monotonic() - begun < 0.5 * module._TIMEOUT  # it does not wait for the dead
-    is_whole(tmp_path / "study", whole, killed=True)
-    run = run_by(tmp_path)
+    assert time.monotonic() - begun < 0.5 * module._TIMEOUT  # it does not wait for the killed job
+    assert_complete(tmp_path / "study", complete, killed=True)
+    run = runs_per_chunk(tmp_path)
     assert set(run) == set(range(0, CASES, 3))
     in_flight = 2 * workers_of_executor(None)
     assert sum(run.values()) - len(run) <= in_flight
@@ -165,16 +165,16 @@ def test_claims_expire_after_the_timeout(tmp_path, monkeypatch, content):
     path, one = claim(tmp_path, content), Claims(tmp_path)
     now = [1000.0]
     monkeypatch.setattr(module.time, "monotonic", lambda: now[0])
-    os.utime(path, (0, 0))  # clocks of other machines tell nothing
+    os.utime(path, (0, 0))  # clocks of other machines may differ
     assert not one.take(7)
     now[0] += 0.9 * module._TIMEOUT
     assert not one.take(7)
-    os.utime(path)  # it lives
+    os.utime(path)  # the claim has been renewed
     now[0] += 0.9 * module._TIMEOUT
     assert not one.take(7)
     now[0] += 1.1 * module._TIMEOUT
     other = Claims(tmp_path)
-    assert not other.take(7)  # it has not been looking for so long
+    assert not other.take(7)  # the other job has not been watching for so long
     assert one.take(7)
     assert not other.take(7)
 
@@ -204,7 +204,7 @@ def test_claims_of_ended_processes_expire_immediately(tmp_path):
     running.communicate(b"\n")
     assert one.take(7)
     assert not other.take(7)
-    # a later process of the same number is another one
+    # a later process with the same number is a different one
     claim(tmp_path, module._this_job() | {"begun": "1"}, 8)
     assert one.take(8)
     claim(tmp_path, module._this_job(), 9)
@@ -212,7 +212,7 @@ def test_claims_of_ended_processes_expire_immediately(tmp_path):
 
 
 @pytest.mark.wide
-def test_damaged_claims_do_not_change_results(whole, tmp_path, monkeypatch):
+def test_damaged_claims_do_not_change_results(complete, tmp_path, monkeypatch):
     folder = tmp_path / "study"
     folder.mkdir()
     for number, content in enumerate(SILENT.values()):
@@ -221,7 +221,7 @@ def test_damaged_claims_do_not_change_results(whole, tmp_path, monkeypatch):
     (folder / "claims" / "000011-more").write_text("")
     monkeypatch.setattr(module, "_TIMEOUT", 0.5)
     run_sweep(folder)
-    is_whole(folder, whole)
+    assert_complete(folder, complete)
 
 
 def test_failing_job_releases_its_chunks(tmp_path):

@@ -1,4 +1,4 @@
-"""Cloud analysis: least squares and logistic regression by other means, curves and coverage."""
+"""Cloud analysis: independent least squares and logistic regression, curves and coverage."""
 
 import math
 
@@ -24,8 +24,8 @@ def base():
     return rf.sweep(SYSTEM, motions, accuracy="fast", progress=False)
 
 
-def made(base, seed=0, *, falls=True, rests=False):
-    """Responses about a line, with overturning as a logistic curve has it."""
+def synthetic_runs(base, seed=0, *, falls=True, rests=False):
+    """Return responses about a line, with overturning drawn from a logistic curve."""
     rng = np.random.default_rng(seed)
     logs = rng.normal(0.0, 0.6, COUNT)
     response = np.exp(-1.5 + 1.3 * logs + 0.35 * rng.standard_normal(COUNT))
@@ -44,7 +44,7 @@ def made(base, seed=0, *, falls=True, rests=False):
 
 
 def logistic_by_weights(logs, verdict):
-    """Iteratively reweighted least squares, as textbooks have it."""
+    """Fit a logistic curve by iteratively reweighted least squares."""
     design = np.column_stack([np.ones(len(logs)), logs])
     at = np.zeros(2)
     for _ in range(50):
@@ -56,7 +56,7 @@ def logistic_by_weights(logs, verdict):
 
 
 def test_cloud_without_overturning_equals_lognormal_least_squares(base):
-    runs = made(base, falls=False)
+    runs = synthetic_runs(base, falls=False)
     found = rf.cloud_analysis(runs, "strength", limits=[0.1, 0.4])
     logs, response = (
         np.log(runs.strength.values),
@@ -81,7 +81,7 @@ def test_cloud_without_overturning_equals_lognormal_least_squares(base):
 
 
 def test_overturning_is_fitted_by_logistic_regression(base):
-    runs = made(base, seed=3)
+    runs = synthetic_runs(base, seed=3)
     found = rf.cloud_analysis(runs, "strength", limits=[0.3])
     fell = runs.status.values.ravel() == RunStatus.OVERTURNED
     logs = np.log(runs.strength.values)
@@ -93,14 +93,14 @@ def test_overturning_is_fitted_by_logistic_regression(base):
     x = np.log(found.strength.values)
     collapse = 1.0 / (1.0 + np.exp(-at[0] - at[1] * x))
     eta = (line.intercept + line.slope * x - math.log(0.3)) / found.residual_dispersion.item()
-    whole = collapse + (1.0 - collapse) * stats.norm.cdf(eta)
-    np.testing.assert_allclose(found.exceedance_probability.isel(limit_state=0), whole, rtol=1e-6)
+    total = collapse + (1.0 - collapse) * stats.norm.cdf(eta)
+    np.testing.assert_allclose(found.exceedance_probability.isel(limit_state=0), total, rtol=1e-6)
     np.testing.assert_allclose(
         found.exceedance_probability.isel(limit_state=1), collapse, rtol=1e-6
     )
     over = found.sel(limit_state="overturning")
     assert over.median_intensity.item() == pytest.approx(math.exp(-at[0] / at[1]), rel=1e-4)
-    # a logistic curve is at Phi(1) one unit of its logit away
+    # a logistic curve reaches Phi(1) at this logit
     reach = math.log(stats.norm.cdf(1.0) / stats.norm.cdf(-1.0)) / at[1]
     assert over.dispersion.item() == pytest.approx(reach, rel=1e-3)
     assert int(found.cloud_overturned_count) == fell.sum() == np.isinf(found.cloud_response).sum()
@@ -113,7 +113,7 @@ def test_overturning_is_fitted_by_logistic_regression(base):
 
 
 def test_resting_runs_are_modelled_separately(base):
-    runs = made(base, seed=5, rests=True)
+    runs = synthetic_runs(base, seed=5, rests=True)
     found = rf.cloud_analysis(runs, "strength", limits=[0.1])
     response = runs.peak_relative_rotation.values.ravel()
     fell = runs.status.values.ravel() == RunStatus.OVERTURNED
@@ -126,8 +126,8 @@ def test_resting_runs_are_modelled_separately(base):
     x = np.log(found.strength.values)
     shares = [1.0 / (1.0 + np.exp(-a - b * x)) for a, b in (falls, moves)]
     eta = (line.intercept + line.slope * x - math.log(0.1)) / found.residual_dispersion.item()
-    whole = shares[0] + (1.0 - shares[0]) * shares[1] * stats.norm.cdf(eta)
-    np.testing.assert_allclose(found.exceedance_probability.isel(limit_state=0), whole, rtol=1e-6)
+    total = shares[0] + (1.0 - shares[0]) * shares[1] * stats.norm.cdf(eta)
+    np.testing.assert_allclose(found.exceedance_probability.isel(limit_state=0), total, rtol=1e-6)
     floored = rf.cloud_analysis(runs, "strength", limits=[0.1], least=0.1)
     assert int(floored.resting_count) == (response[~fell] < 0.1).sum()
 
@@ -138,11 +138,11 @@ def test_regression_coefficients_are_drawn_from_t_and_chi2():
     line = Regression.fit(logs, 0.3 + 1.2 * logs + 0.4 * rng.standard_normal(15))
     intercept, slope, spread = line.draw_coefficients(np.random.default_rng(2), 40_000)
     error = np.sqrt(np.diag(line.covariance))
-    for drawn, middle, size in (
+    for sample, middle, size in (
         (intercept, line.intercept, error[0]),
         (slope, line.slope, error[1]),
     ):
-        assert stats.kstest((drawn - middle) / size, stats.t(13).cdf).pvalue > 1e-3
+        assert stats.kstest((sample - middle) / size, stats.t(13).cdf).pvalue > 1e-3
     assert stats.kstest(13 * (line.dispersion / spread) ** 2, stats.chi2(13).cdf).pvalue > 1e-3
 
 
@@ -154,18 +154,18 @@ def test_cloud_bounds_have_nominal_coverage():
     for _ in range(600):
         logs = rng.normal(0.0, 0.6, 30)
         response = np.exp(-1.0 + 1.3 * logs + 0.4 * rng.standard_normal(30))
-        drawn = Cloud.fit(logs, response).draw_curves(at, level, rng, 1000)[:, 0]
-        low, high = np.quantile(drawn, [0.025, 0.975])
+        curves = Cloud.fit(logs, response).draw_curves(at, level, rng, 1000)[:, 0]
+        low, high = np.quantile(curves, [0.025, 0.975])
         held += low <= truth <= high
     assert 0.93 <= held / 600 <= 0.97
 
 
 def test_curve_above_one_half_everywhere_has_zero_median_bound(base):
-    """Of few runs many draws of the overturning probability fall with the intensity."""
+    """With few runs, the overturning probability decreases with intensity in many draws."""
     rng = np.random.default_rng(2)
     logs = rng.normal(0.5, 0.6, 12)
     response = np.exp(-2.0 + 1.5 * logs + 0.3 * rng.standard_normal(12))
-    fell = np.arange(12) == np.argsort(logs)[-2]  # one alone
+    fell = np.arange(12) == np.argsort(logs)[-2]  # a single one
     cloud = Cloud.fit(logs, np.where(fell, np.inf, response))
     wide = np.linspace(logs.min() - 3.0, logs.max() + 3.0, 601)
     curves = cloud.draw_curves(wide, 0.1, np.random.default_rng(0), 4000)
@@ -216,7 +216,7 @@ def test_degenerate_logistic_fits_have_a_status():
 
 
 def test_motions_of_one_intensity_have_no_fragility(base):
-    runs = made(base, seed=3)
+    runs = synthetic_runs(base, seed=3)
     rounding = 1.0 + 1e-15 * (np.arange(runs.sizes["motion"]) % 3)
     found = rf.cloud_analysis(runs.assign_coords(strength=("motion", rounding)), "strength")
     assert np.isnan(found.median_intensity).all()
@@ -225,7 +225,7 @@ def test_motions_of_one_intensity_have_no_fragility(base):
 
 
 def test_motions_that_are_run_twice_have_no_bounds(base):
-    runs = made(base, seed=3)
+    runs = synthetic_runs(base, seed=3)
     twice = xr.concat([runs, runs], "motion", data_vars="minimal", combine_attrs="override")
     found = rf.cloud_analysis(twice, "strength", limits=[0.3])
     assert np.isnan(found.median_intensity_upper_bound).all()
@@ -235,7 +235,7 @@ def test_motions_that_are_run_twice_have_no_bounds(base):
 
 
 def test_cloud_yields_annual_rates_and_writes_netcdf(base, tmp_path):
-    runs = made(base, seed=3)
+    runs = synthetic_runs(base, seed=3)
     found = rf.cloud_analysis(runs, "strength", limits=[0.3])
     hazard = {"intensity": (np.geomspace(0.01, 50, 9), "m"), "rate": np.geomspace(1, 1e-6, 9)}
     rates = rf.annual_rate(found, hazard)
@@ -246,8 +246,8 @@ def test_cloud_yields_annual_rates_and_writes_netcdf(base, tmp_path):
         1.0 + np.exp(-found.logistic_intercept.item() - found.logistic_slope.item() * np.log(x))
     )
     rate = np.exp(np.interp(np.log(x), np.log(hazard["intensity"][0]), np.log(hazard["rate"])))
-    whole = -(0.5 * (falls[1:] + falls[:-1]) * np.diff(rate)).sum()
-    assert rates.annual_rate[1].item() == pytest.approx(whole, rel=1e-3)
+    total = -(0.5 * (falls[1:] + falls[:-1]) * np.diff(rate)).sum()
+    assert rates.annual_rate[1].item() == pytest.approx(total, rel=1e-3)
     found.to_netcdf(tmp_path / "cloud.nc")
 
 
@@ -261,11 +261,11 @@ def test_cloud_yields_annual_rates_and_writes_netcdf(base, tmp_path):
 )
 def test_invalid_cloud_arguments_are_refused(base, options, error, words):
     with pytest.raises(error, match=words):
-        rf.cloud_analysis(made(base), **{"intensity": "strength", **options})
+        rf.cloud_analysis(synthetic_runs(base), **{"intensity": "strength", **options})
     with pytest.raises(StudyError, match="3 runs have a verdict"):
-        rf.cloud_analysis(made(base).isel(motion=slice(3)), "strength")
+        rf.cloud_analysis(synthetic_runs(base).isel(motion=slice(3)), "strength")
     with pytest.raises(StudyError, match="1 run has a verdict"):
-        rf.cloud_analysis(made(base).isel(motion=slice(1)), "strength")
+        rf.cloud_analysis(synthetic_runs(base).isel(motion=slice(1)), "strength")
 
 
 def test_sliding_runs_are_not_reported_as_at_rest():

@@ -1,4 +1,4 @@
-"""Spreads that go together: distributions that stay, rank correlations by the closed form."""
+"""Correlated spreads: marginal distributions, and rank correlations in closed form."""
 
 import math
 
@@ -44,11 +44,11 @@ def test_cases_have_requested_distributions_and_correlations():
     )  # fmt: skip
     values = [found[name].values for name in SPREAD]
     laws = [stats.norm(0.5, 0.02), stats.lognorm(0.1, scale=2.0), stats.uniform(0.5, 1.0)]
-    for one, law in zip(values, laws, strict=True):
-        assert stats.kstest(one, law.cdf).pvalue > 0.5  # a hypercube is nearer than chance
+    for sample, law in zip(values, laws, strict=True):
+        assert stats.kstest(sample, law.cdf).pvalue > 0.5  # less deviation than at random
     scores = np.stack([stats.norm.ppf(law.cdf(v)) for law, v in zip(laws, values, strict=True)])
     np.testing.assert_allclose(np.corrcoef(scores), MATRIX, atol=0.08)
-    # normal and lognormal: the correlation of the one with the logarithm of the other
+    # normal and lognormal: the correlation with the logarithm of the lognormal
     assert np.corrcoef(values[0], np.log(values[1]))[0, 1] == pytest.approx(0.8, abs=0.05)
     again = rf.probability_of_overturning(
         SYSTEM, PULSE, spread=SPREAD, correlation=MATRIX, cases=600, free_vibration="1 s",
@@ -58,7 +58,7 @@ def test_cases_have_requested_distributions_and_correlations():
 
 
 def test_correlated_probability_matches_monte_carlo():
-    """Of a pulse far longer than the block's time it tips where width over height is too little."""
+    """Under a pulse much longer than the block's time scale, slender blocks overturn."""
     slow = rf.GroundMotion.half_sine_pulse("2.6 m/s^2", "40 s")
     spread = {"width": ("normal", "0.5 m", "0.04 m"), "height": ("normal", "2 m", "0.16 m")}
     shares = {}
@@ -70,14 +70,14 @@ def test_correlated_probability_matches_monte_carlo():
         rng = np.random.default_rng(5)
         z = rng.multivariate_normal([0, 0], [[1, rho], [rho, 1]], 200_000)
         ratio = (0.5 + 0.04 * z[:, 0]) / (2.0 + 0.16 * z[:, 1])
-        expected = (9.80665 * ratio < 2.6).mean()  # uplift by far longer a push than it needs
+        expected = (9.80665 * ratio < 2.6).mean()  # it lasts long enough to overturn
         shares[rho] = found.overturning_probability.item()
         assert shares[rho] == pytest.approx(expected, abs=3 * math.sqrt(0.25 / 400))
     assert shares[-0.9] < shares[0.9] - 0.1
 
 
 @pytest.mark.parametrize(
-    ("given", "words"),
+    ("correlation", "words"),
     [
         ({("width", "depth"): 0.5}, "pairs of two of width, height, scale"),
         ({("width", "height"): 1.0}, "between -1 and 1"),
@@ -85,6 +85,8 @@ def test_correlated_probability_matches_monte_carlo():
         ([[1, 0.9, -0.9], [0.9, 1, 0.9], [-0.9, 0.9, 1]], "not positive definite"),
     ],
 )
-def test_invalid_correlations_are_refused(given, words):
+def test_invalid_correlations_are_refused(correlation, words):
     with pytest.raises(ComponentError, match=words):
-        rf.probability_of_overturning(SYSTEM, PULSE, spread=SPREAD, correlation=given, cases=10)
+        rf.probability_of_overturning(
+            SYSTEM, PULSE, spread=SPREAD, correlation=correlation, cases=10
+        )

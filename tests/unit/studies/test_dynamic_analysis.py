@@ -6,7 +6,14 @@ from functools import cache
 import numpy as np
 import pytest
 import xarray as xr
-from unit.studies.analysed import FAST, QUIET, SYSTEM, checked, motions, whole_analysis
+from unit.studies.small_analyses import (
+    FAST,
+    QUIET,
+    SYSTEM,
+    assert_valid_file,
+    complete_analysis,
+    motions,
+)
 
 import rockframe as rf
 from rockframe.errors import ComponentError, ModelWarning, SchemaError, SolverWarning
@@ -17,14 +24,14 @@ from rockframe.studies.sweeps import execution
 
 @pytest.fixture
 def analysis():
-    return whole_analysis()
+    return complete_analysis()
 
 
 # dynamic analysis ----------------------------------------------------------------------------
 
 
 def test_brackets_agree_with_single_runs(analysis, tmp_path):
-    assert checked(analysis, tmp_path)
+    assert assert_valid_file(analysis, tmp_path)
     assert analysis.limit_state.values.tolist() == ["uplift", "rotation 0.4", "overturning"]
     assert analysis.capacity_scale.dims == ("limit_state", "motion")
     several = 0
@@ -65,8 +72,8 @@ def test_mirrored_motions_give_the_same_dynamic_analysis(analysis):
 def test_a_dynamic_analysis_agrees_with_the_critical_scale(analysis):
     for name, motion in motions().items():
         least = analysis.capacity_scale.sel(motion=name, limit_state="overturning").item()
-        looked = rf.critical_scale(SYSTEM, motion, largest=6.0, free_vibration="4 s", runs=200)
-        assert looked.critical_scale.item() <= least * (1.0 + 1e-3)
+        critical = rf.critical_scale(SYSTEM, motion, largest=6.0, free_vibration="4 s", runs=200)
+        assert critical.critical_scale.item() <= least * (1.0 + 1e-3)
 
 
 @pytest.mark.long
@@ -74,14 +81,14 @@ def test_period_of_a_spectral_intensity_is_stored_and_labelled():
     from matplotlib import pyplot
 
     measure = "pseudo_spectral_acceleration"
-    asked = {"intensity": measure, "period": "1.7 s"}
+    intensity = {"intensity": measure, "period": "1.7 s"}
     suite = motions()
-    some = {"scale": [0.5, 1.5, 4.0], **FAST}
-    analysis = rf.incremental_dynamic_analysis(SYSTEM, suite, **asked, **some)
-    critical = rf.critical_scale(SYSTEM, suite["seed 0"], scales=20, runs=30, **asked, **QUIET)
+    scan = {"scale": [0.5, 1.5, 4.0], **FAST}
+    analysis = rf.incremental_dynamic_analysis(SYSTEM, suite, **intensity, **scan)
+    critical = rf.critical_scale(SYSTEM, suite["seed 0"], scales=20, runs=30, **intensity, **QUIET)
     found = rf.fragility(analysis, "SA", period="1.7 s")
     pair = rf.fragility(analysis, ["PGA", "SA"], period="1.7 s")
-    spectrum = rf.overturning_spectrum(SYSTEM, suite, periods=(["1.7 s"]), **asked, **some)
+    spectrum = rf.overturning_spectrum(SYSTEM, suite, periods=(["1.7 s"]), **intensity, **scan)
     for one in (analysis, critical, found, pair, spectrum):
         assert one.attrs["intensity_period"] == 1.7
     words = "pseudo spectral acceleration at 1.7 s"
@@ -95,7 +102,7 @@ def test_period_of_a_spectral_intensity_is_stored_and_labelled():
         rf.plot.fragility(pair)[0].get_ylabel(),
     ]
     assert axes == [f"{words} [m s$^{{-2}}$]"] * 5
-    plain = rf.incremental_dynamic_analysis(SYSTEM, suite, intensity="PGA", **some)
+    plain = rf.incremental_dynamic_analysis(SYSTEM, suite, intensity="PGA", **scan)
     assert "intensity_period" not in plain.attrs
     assert rf.plot.dynamic_analysis(plain)[0].get_ylabel().startswith("peak ground acceleration [")
 
@@ -103,12 +110,12 @@ def test_period_of_a_spectral_intensity_is_stored_and_labelled():
 def test_scan_starting_too_high_warns_of_lower_capacities(analysis):
     suite = motions()
     over = analysis.sel(limit_state="overturning").capacity_scale
-    least = float(np.sort(over)[1:3].mean())  # some motions overturn below it, some above
+    least = float(np.sort(over)[1:3].mean())  # some motions overturn below it and others above
     below = int(rf.sweep(SYSTEM, suite, scale=[least], **FAST).overturned.sum())
     assert 0 < below < 4
     scan = {"scale": [least, least + 1.0, least + 2.0], **FAST}
-    told = rf"{below} of 4 motions overturn at its least scale, {least:.4g}, already"
-    with pytest.warns(ModelWarning, match=f"starts too high.*{told}"):
+    message = rf"{below} of 4 motions overturn at its least scale, {least:.4g}, already"
+    with pytest.warns(ModelWarning, match=f"starts too high.*{message}"):
         found = rf.incremental_dynamic_analysis(SYSTEM, suite, **scan)
     most = found.capacity_scale.max().item()
     start = f"Of 4 motions 4 overturned, from at or below {least:.4g} to {most:.4g} times the"
@@ -128,19 +135,19 @@ def test_scan_starting_too_high_warns_of_lower_capacities(analysis):
 
 def test_stored_analysis_is_not_run_again(tmp_path, monkeypatch):
     options = {"scale": [1.0, 2.0, 4.0], **FAST}
-    kept = rf.incremental_dynamic_analysis(SYSTEM, motions(), store=tmp_path / "s", **options)
+    stored = rf.incremental_dynamic_analysis(SYSTEM, motions(), store=tmp_path / "s", **options)
     plain = rf.incremental_dynamic_analysis(SYSTEM, motions(), **options)
     folders = sorted(path.name for path in (tmp_path / "s").iterdir())
     assert {"finer 01", "round 01", "round 02"} <= {*folders}
     assert folders[-1] == "scan"
     from rockframe.studies.sweeps import execution
 
-    def refuse(*given, **named):
+    def refuse(*args, **kwargs):
         pytest.fail("what is kept was run again")
 
     monkeypatch.setattr(execution, "run_chunk", refuse)
     again = rf.incremental_dynamic_analysis(SYSTEM, motions(), store=tmp_path / "s", **options)
-    for one in (kept, again):
+    for one in (stored, again):
         xr.testing.assert_identical(one.drop_attrs(), plain.drop_attrs())
 
 
@@ -167,8 +174,8 @@ def uninterrupted(resolution):
 )
 def test_interrupted_analysis_warns_and_resumes(tmp_path, monkeypatch, after, kind):
     # at a resolution of one brackets are narrowed at once
-    some = {"scale": [1.0, 2.0, 4.0], "resolution": 1.0 if after != 2 else 0.02, **FAST}
-    options = {**some, "store": tmp_path / "s"}
+    scan = {"scale": [1.0, 2.0, 4.0], "resolution": 1.0 if after != 2 else 0.02, **FAST}
+    options = {**scan, "store": tmp_path / "s"}
     run_study, rounds = of_lines.run_study, itertools.count()
 
     def cut(study, bar, **means):
@@ -180,7 +187,7 @@ def test_interrupted_analysis_warns_and_resumes(tmp_path, monkeypatch, after, ki
         if kind == "with the last case":
             return run_study(study, bar, **means)[0], False
 
-        def stop(*given, **named):
+        def stop(*args, **kwargs):
             raise KeyboardInterrupt
 
         with monkeypatch.context() as patch:
@@ -193,7 +200,7 @@ def test_interrupted_analysis_warns_and_resumes(tmp_path, monkeypatch, after, ki
             found = rf.incremental_dynamic_analysis(SYSTEM, motions(), **options)
         rounds = itertools.count()
         with pytest.warns(SolverWarning, match="interrupted; brackets"):
-            spectrum = rf.overturning_spectrum(SYSTEM, motions(), periods=["1.7 s"], **some)
+            spectrum = rf.overturning_spectrum(SYSTEM, motions(), periods=["1.7 s"], **scan)
     assert found.verdict.endswith("; interrupted.")
     assert spectrum.verdict.endswith("; interrupted.")
     if after == 2:
@@ -202,9 +209,9 @@ def test_interrupted_analysis_warns_and_resumes(tmp_path, monkeypatch, after, ki
         apart = (found.scale_above - found.scale_below).max().item()
         rounds_made = after + (kind == "with the last case")
         assert apart == pytest.approx(2.0 / 2**rounds_made)
-    whole = rf.incremental_dynamic_analysis(SYSTEM, motions(), **options)
-    xr.testing.assert_identical(whole.drop_attrs(), uninterrupted(some["resolution"]))
-    assert "interrupted" not in whole.verdict
+    complete = rf.incremental_dynamic_analysis(SYSTEM, motions(), **options)
+    xr.testing.assert_identical(complete.drop_attrs(), uninterrupted(scan["resolution"]))
+    assert "interrupted" not in complete.verdict
 
 
 def test_verdict_of_one_motion_names_one_scale(analysis):
@@ -246,7 +253,7 @@ def test_capacities_do_not_depend_on_scan_step():
             least = float(one.capacity_scale.sel(motion=name))
             widest = float(one.capacity_resolution.sel(motion=name))
             below = truth.sel(motion=name, scale=slice(0.0, least * (1.0 - 1e-3))).squeeze()
-            # no range that is wider than the resolution falls below a capacity
+            # no range wider than the resolution lies below a capacity
             edges = np.flatnonzero(np.diff(np.r_[False, below.values, False].astype(int)))
             ranges = below.scale.values[edges[1::2] - 1] / below.scale.values[edges[::2]] - 1.0
             assert (ranges <= widest).all()
@@ -295,9 +302,9 @@ def test_brackets_split_at_a_third_verdict():
     shown = np.array([[[verdict(s) for s in scales]]])
     runs = []
 
-    def look(part, wanted):
+    def look(part, cases):
         runs.append(part)
-        return np.array([[verdict(s) for _, s in wanted]]), True
+        return np.array([[verdict(s) for _, s in cases]]), True
 
     found, whole = bisect_brackets(find_brackets(scales, shown), look, width=1e-6)
     assert whole

@@ -1,4 +1,4 @@
-"""Ensembles, samples, maps: what is one population, which runs say nothing, few cases."""
+"""Ensembles, samples and maps: one population, runs without a result, few cases."""
 
 import numpy as np
 import pytest
@@ -10,7 +10,7 @@ from rockframe.studies.dynamic_analysis import verdict_of_analysis
 from rockframe.studies.probability import _with_probability, rank_parameters
 
 SYSTEM = rf.System(rf.Block(width="0.5 m", height="2 m", mass="400 kg"))
-HOW = {"free_vibration": "3 s", "progress": False}
+OPTIONS = {"free_vibration": "3 s", "progress": False}
 
 
 def motions(count=5):
@@ -25,7 +25,7 @@ def fail(runs, **place):
 
 
 def test_sweep_over_structures_needs_pooling():
-    runs = rf.sweep(SYSTEM, motions(), scale=[1.0, 2.0], width=["0.4 m", "0.5 m"], **HOW)
+    runs = rf.sweep(SYSTEM, motions(), scale=[1.0, 2.0], width=["0.4 m", "0.5 m"], **OPTIONS)
     with pytest.raises(ComponentError, match=r"over scale, width .*pooled=\('scale', 'width'\)"):
         rf.ensemble_statistics(runs)
     with pytest.raises(ComponentError, match="goes over scale beside motions"):
@@ -38,15 +38,15 @@ def test_sweep_over_structures_needs_pooling():
     assert every.member_count.item() == 20
     assert "no bounds, for several members are of one motion" in every.verdict
     bounds = [name for name in every if str(name).endswith("_bound")]
-    # that the whole ensemble is at most all of it needs no confidence
+    # no confidence is needed if a fractile includes the whole ensemble
     assert all(every[name][:-1].isnull().all() for name in bounds)
-    table = rf.sweep(SYSTEM, motions(), cases={"width": ["0.4 m", "0.5 m"]}, **HOW)
+    table = rf.sweep(SYSTEM, motions(), cases={"width": ["0.4 m", "0.5 m"]}, **OPTIONS)
     with pytest.raises(ComponentError, match="over case"):
         rf.ensemble_statistics(table)
 
 
 def test_members_without_a_result_are_counted():
-    runs = rf.sweep(SYSTEM, motions(), scale=[2.0], **HOW)
+    runs = rf.sweep(SYSTEM, motions(), scale=[2.0], **OPTIONS)
     fail(runs, motion=1)
     found = rf.ensemble_statistics(runs)
     assert (found.member_count.item(), found.left_out_count.item()) == (4, 1)
@@ -54,13 +54,13 @@ def test_members_without_a_result_are_counted():
 
 
 def test_sample_verdict_reports_motions_and_omitted_cases():
-    drawn = rf.probability_of_overturning(
-        SYSTEM, motions(), cases=40, spread={"scale": ("uniform", 2.0, 8.0)}, **HOW
+    sample = rf.probability_of_overturning(
+        SYSTEM, motions(), cases=40, spread={"scale": ("uniform", 2.0, 8.0)}, **OPTIONS
     )
-    assert "by 40 cases under these 5 motions" in drawn.verdict
-    assert "left out" not in drawn.verdict
-    assert rf.ensemble_statistics(drawn).member_count.item() == 40
-    bare = drawn.drop_dims("parameter").copy(deep=True)
+    assert "by 40 cases under these 5 motions" in sample.verdict
+    assert "left out" not in sample.verdict
+    assert rf.ensemble_statistics(sample).member_count.item() == 40
+    bare = sample.drop_dims("parameter").copy(deep=True)
     fail(bare, case=slice(0, 7))
     found = _with_probability(bare, ["scale"], several=True, level=0.95)
     assert found.verdict_count.item() == 33
@@ -69,7 +69,7 @@ def test_sample_verdict_reports_motions_and_omitted_cases():
 
 @pytest.mark.long
 def test_a_dynamic_analysis_counts_runs_without_a_verdict():
-    analysis = rf.incremental_dynamic_analysis(SYSTEM, motions(3), scale=[1.0, 4.0, 9.0], **HOW)
+    analysis = rf.incremental_dynamic_analysis(SYSTEM, motions(3), scale=[1.0, 4.0, 9.0], **OPTIONS)
     assert "no verdict" not in analysis.verdict
     fail(analysis, motion=0, scale=slice(0, 2))
     assert "2 of 9 runs of the scan have no verdict" in verdict_of_analysis(analysis)
@@ -80,46 +80,48 @@ def test_map_masks_runs_without_a_verdict():
 
     found = rf.overturning_map(
         SYSTEM, rf.GroundMotion.sine_pulse, amplitude=([1, 6], "m/s^2"),
-        frequency=([1, 2], "Hz"), **HOW,
+        frequency=([1, 2], "Hz"), **OPTIONS,
     )  # fmt: skip
-    drawn = {}
+    images = {}
     for name in ("known", "failed"):
         axes = rf.plot.overturning_map(found)
         (legend,) = axes.figure.legends
-        drawn[name] = (
+        images[name] = (
             np.ma.getmaskarray(axes.collections[0].get_array()).ravel().tolist(),
             [text.get_text() for text in legend.get_texts()],
         )
         fail(found, amplitude=0, frequency=1)
-    assert drawn["known"][0] == [False] * 4
-    assert drawn["failed"][0] == [False, True, False, False]
-    assert [words[-1] == "no verdict" for _, words in drawn.values()] == [False, True]
+    assert images["known"][0] == [False] * 4
+    assert images["failed"][0] == [False, True, False, False]
+    assert [words[-1] == "no verdict" for _, words in images.values()] == [False, True]
     pyplot.close("all")
 
 
 def test_a_spectrum_counts_runs_without_a_verdict(monkeypatch):
     from rockframe.studies import spectra
 
-    def asked():
+    def counted():
         return rf.overturning_spectrum(
-            SYSTEM, motions(1), periods=([2, 4], "s"), scale=[1.0, 2.0, 4.0], **HOW
+            SYSTEM, motions(1), periods=([2, 4], "s"), scale=[1.0, 2.0, 4.0], **OPTIONS
         ).left_out_count.values.tolist()
 
-    assert asked() == [[[0], [0]]]
-    told = spectra.overturns
-    monkeypatch.setattr(spectra, "overturns", lambda runs: told(runs).where(runs.scale != 2.0))
-    assert asked() == [[[1], [1]]]
+    assert counted() == [[[0], [0]]]
+    overturned_counts = spectra.overturns
+    monkeypatch.setattr(
+        spectra, "overturns", lambda runs: overturned_counts(runs).where(runs.scale != 2.0)
+    )
+    assert counted() == [[[1], [1]]]
 
 
 @pytest.mark.parametrize("count", [44, 90])
 def test_first_order_index_is_the_adjusted_correlation_ratio(count):
-    """One less the variance within groups over that of all, each by its degrees of freedom."""
+    """One minus the variance within groups over the total, each by its degrees of freedom."""
     rng = np.random.default_rng(count)
     values = rng.normal(size=count)
     verdict = (values + rng.normal(size=count) > 0.0).astype(float)
     groups = count // 20
     parts = np.array_split(verdict[np.argsort(values)], groups)
-    if count % groups:  # the first groups of the function are those that are larger
+    if count % groups:  # the function makes its first groups the larger ones
         place = np.arange(count) * groups // count
         parts = [verdict[np.argsort(values)][place == k] for k in range(groups)]
     within = sum(((part - part.mean()) ** 2).sum() for part in parts) / (count - groups)

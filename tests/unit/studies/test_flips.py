@@ -1,4 +1,4 @@
-"""Finding flips along a scale: verdicts and clearances made up for the purpose."""
+"""Finding flips along a scale, with artificial verdicts and clearances."""
 
 import math
 from dataclasses import replace
@@ -15,10 +15,10 @@ ROW = [0.1 * k for k in range(41)]
 
 def runs_of(peak, undecided=lambda scale: False):
     """Make runs whose peak over the overturning angle is a function of the scale."""
-    asked = []
+    tried = []
 
     def look(scale):
-        asked.append(scale)
+        tried.append(scale)
         share = peak(scale)
         if undecided(scale):
             return RunSummary(
@@ -30,7 +30,7 @@ def runs_of(peak, undecided=lambda scale: False):
             True, 1.0, (share - 1.0, 1.0), time=1.0, direction=1, status=Status.OVERTURNED
         )
 
-    return look, asked
+    return look, tried
 
 
 def test_single_flip_is_bracketed_to_requested_width():
@@ -46,18 +46,18 @@ def test_overturning_island_is_found_when_peaks_hint_at_it():
     def peak(scale):
         return 0.2 * scale + 0.8 * math.exp(-((10.0 * (scale - 1.55)) ** 2))
 
-    look, asked = runs_of(peak)
+    look, tried = runs_of(peak)
     found = scan_scales(look, ROW, max_runs=100, width=1e-4)
     assert not any(peak(scale) >= 1.0 for scale in ROW if scale < 5.0)
     assert [flip.overturns_above for flip in found.flips()] == [True, False]
     for flip in found.flips():
         assert (peak(flip.below) < 1.0) != (peak(flip.above) < 1.0)
     assert found.resolved_up_to == ROW[-1]
-    assert len(set(asked)) == len(asked) == len(found.runs) < 100
+    assert len(set(tried)) == len(tried) == len(found.runs) < 100
 
 
 def test_sentence_states_the_largest_gap_between_runs():
-    """An island that nothing tells of is missed, and the sentence promises nothing else."""
+    """An island without any sign in the peaks is missed, and the sentence does not exclude it."""
     look, _ = runs_of(lambda scale: 1.5 if 2.001 < scale < 2.099 else 0.05)
     found = scan_scales(look, ROW, max_runs=100, width=1e-4)
     assert found.flips() == []
@@ -73,8 +73,8 @@ def test_sentence_states_the_largest_gap_between_runs():
 def test_a_gap_is_rounded_up(gap):
     look, _ = runs_of(lambda scale: 0.01)
     text = flips_sentence(scan_scales(look, [0.0, gap], max_runs=2, width=1e-3), width=1e-3)
-    said = float(text.partition("at most ")[2].partition(" apart")[0])
-    assert gap * (1.0 - 1e-9) <= said <= 1.1 * gap
+    stated = float(text.partition("at most ")[2].partition(" apart")[0])
+    assert gap * (1.0 - 1e-9) <= stated <= 1.1 * gap
 
 
 def test_a_run_without_a_verdict_leaves_a_gap():
@@ -86,42 +86,42 @@ def test_sentence_states_resolved_range_when_runs_are_exhausted():
     def peak(scale):
         return 0.2 * scale + 0.8 * math.exp(-((10.0 * (scale - 1.55)) ** 2))
 
-    look, asked = runs_of(peak)
+    look, tried = runs_of(peak)
     found = scan_scales(look, ROW, max_runs=len(ROW), width=1e-4, resolution=0.02)
-    assert len(asked) == len(ROW)
+    assert len(tried) == len(ROW)
     assert found.flips() == []
     assert found.resolved_up_to == 0.0
-    said = flips_sentence(found, width=1e-4, resolution=0.02)
-    assert said.endswith(
+    sentence = flips_sentence(found, width=1e-4, resolution=0.02)
+    assert sentence.endswith(
         "Beyond 0 some are more than 2 % apart, and a lesser scale between them may overturn."
     )
 
 
 @pytest.mark.parametrize("resolution", [0.05, 0.02, pytest.param(0.005, marks=pytest.mark.long)])
 def test_no_range_wider_than_resolution_is_missed_in_resolved_range(resolution):
-    """Whatever peaks tell: here nothing."""
+    """Also where peaks are constant and indicate no island."""
     start = 1.3
     for length in (1.05, 2.0):
         wide = start * (1.0 + length * resolution)
-        look, asked = runs_of(lambda at, wide=wide: 1.5 if start < at < wide else 0.01)
+        look, tried = runs_of(lambda at, wide=wide: 1.5 if start < at < wide else 0.01)
         found = scan_scales(look, [0.0, 1.0, 2.0], max_runs=3000, width=1e-4, resolution=resolution)
         assert found.resolved_up_to >= start
         assert [flip.overturns_above for flip in found.flips()][:1] == [True]
         few = scan_scales(look, [0.0, 1.0, 2.0], max_runs=20, width=1e-4, resolution=resolution)
         assert few.resolved_up_to < start
 
-    # a base that does not lift holds at any lesser scale
+    # a base that does not lift does not lift at any smaller scale either
     def still(scale):
         return replace(look(scale), lifted=scale > 1.0)
 
-    count = len(asked)
+    count = len(tried)
     assert (
         scan_scales(
             still, [0.0, 1.0, 2.0], max_runs=3000, width=1e-4, resolution=resolution
         ).resolved_up_to
         >= start
     )
-    assert min(asked[count + 3 :]) > 1.0
+    assert min(tried[count + 3 :]) > 1.0
 
 
 def test_runs_without_a_verdict_do_not_form_flips():
@@ -155,9 +155,9 @@ def test_no_caution_about_lesser_scales_when_the_least_overturns():
 
 
 def test_refinement_skips_low_peaks_and_terminates():
-    look, asked = runs_of(lambda scale: 0.05 * abs(math.sin(40.0 * scale)))
+    look, tried = runs_of(lambda scale: 0.05 * abs(math.sin(40.0 * scale)))
     scan_scales(look, ROW, max_runs=10_000, width=1e-3)
-    assert len(asked) == len(ROW)
+    assert len(tried) == len(ROW)
     look, _ = runs_of(lambda scale: 0.9 + 0.09 * math.sin(1e6 * scale))
     found = scan_scales(look, ROW, max_runs=10_000, width=1e-3)
     scales = list(found.runs)
@@ -182,12 +182,12 @@ def test_interrupted_scan_retains_completed_runs():
     def peak(scale):
         return 0.2 * scale + 0.8 * math.exp(-((10.0 * (scale - 1.55)) ** 2))
 
-    look, asked = runs_of(peak)
+    look, tried = runs_of(peak)
     how = {"max_runs": 400, "width": 1e-4, "resolution": 0.05}
-    whole = scan_scales(look, ROW, **how)
-    assert whole.completed
+    complete = scan_scales(look, ROW, **how)
+    assert complete.completed
     again = 0
-    for count in range(1, len(asked)):
+    for count in range(1, len(tried)):
         look, _ = runs_of(peak)
         left = iter([None] * count)
 
@@ -198,10 +198,10 @@ def test_interrupted_scan_retains_completed_runs():
 
         found = scan_scales(interrupted, ROW, **how)
         assert not found.completed
-        assert sorted(found.runs) == sorted(asked[:count])
+        assert sorted(found.runs) == sorted(tried[:count])
         assert "interrupted" in flips_sentence(found, width=1e-4)
-        # up to there every flip that the whole analysis found lies in a bracket
-        for flip in whole.flips():
+        # every flip of the complete analysis up to that scale lies in a bracket
+        for flip in complete.flips():
             around = [one for one in found.flips() if one.below <= flip.below < one.above]
             if flip.above <= found.resolved_up_to:
                 assert around

@@ -11,8 +11,8 @@ SCALES = np.array([0.5, 1.0, 1.5, 2.0, 2.5])
 SYSTEM = rf.System(rf.Block(width="0.5 m", height="2 m", mass="400 kg"))
 
 
-def made(rows, fell, names="abcdefghijk"):
-    """Runs whose peaks and verdicts are those of the rows, one for each motion."""
+def synthetic_runs(rows, fell, names="abcdefghijk"):
+    """Return runs with given peaks and verdicts, a row for each motion."""
     pulse = rf.GroundMotion.sine_pulse("1 m/s^2", "1 Hz")
     motions = {name: pulse.scaled(1.0 + 0.01 * k) for k, name in enumerate(names[: len(rows)])}
     runs = rf.sweep(SYSTEM, motions, scale=SCALES, accuracy="fast", progress=False)
@@ -29,7 +29,7 @@ def made(rows, fell, names="abcdefghijk"):
 def test_fractiles_of_three_motions_match_hand_calculation():
     rows = [[0.1, 0.2, 0.3, 0.4, 0.5], [0.2, 0.3, 0.6, 1.0, 1.0], [0.3, 0.5, 1.0, 0.8, 1.0]]
     fell = [[0, 0, 0, 0, 0], [0, 0, 0, 1, 1], [0, 0, 1, 0, 1]]
-    runs = made(rows, np.array(fell, dtype=bool))
+    runs = synthetic_runs(rows, np.array(fell, dtype=bool))
     curves = rf.fractile_curves(runs, fractiles=[0.3, 0.5, 0.9], levels=[0.15, 0.55, 0.7])
     at = curves.sel(scale=[1.0, 1.5, 2.0], method="nearest")
     # the third motion overturns at 1.5 and stands again at 2; the second overturns from 2 on
@@ -50,11 +50,11 @@ def test_fractiles_of_three_motions_match_hand_calculation():
 
 
 def test_response_and_intensity_fractiles_of_rising_curves_are_inverse():
-    """Of n curves that rise the k-th response at an intensity is the (n - k + 1)-th intensity."""
+    """For n rising curves, the k-th response at an intensity is the (n - k + 1)-th intensity."""
     rng = np.random.default_rng(4)
     rows = np.cumsum(rng.uniform(0.02, 0.2, size=(11, len(SCALES))), axis=1)
-    runs = made(rows, np.zeros(rows.shape, dtype=bool))
-    shares = [0.16, 0.5, 0.84]  # 11 q is no whole number
+    runs = synthetic_runs(rows, np.zeros(rows.shape, dtype=bool))
+    shares = [0.16, 0.5, 0.84]  # 11 q is not an integer
     curves = rf.fractile_curves(runs, fractiles=shares)
     for share, rest in zip(shares, reversed(shares), strict=True):
         response = curves.response_fractile.sel(quantile=share).values
@@ -105,7 +105,7 @@ def test_fractile_curves_overturn_within_analysis_brackets():
     ],
 )
 def test_invalid_fractile_arguments_are_refused(options, error, words):
-    runs = made([[0.1] * 5, [0.2] * 5], np.zeros((2, 5), dtype=bool))
+    runs = synthetic_runs([[0.1] * 5, [0.2] * 5], np.zeros((2, 5), dtype=bool))
     with pytest.raises(error, match=words):
         rf.fractile_curves(runs, **options)
     with pytest.raises(StudyError, match="expected motions, and one scale"):
@@ -115,17 +115,17 @@ def test_invalid_fractile_arguments_are_refused(options, error, words):
 def test_fractile_curves_of_a_varied_system_drop_the_stored_system():
     system = rf.System(rf.Block(width="0.5 m", height="2 m", mass="400 kg"))
     pulses = {f"{k}": rf.GroundMotion.sine_pulse(f"{3 + k} m/s^2", "1 Hz") for k in range(3)}
-    given = {"scale": [1.0, 1.5], "accuracy": "fast", "progress": False}
-    assert "system_json" in rf.fractile_curves(rf.sweep(system, pulses, **given)).attrs
-    runs = rf.sweep(system, pulses, width=["0.5 m", "0.6 m"], **given)
+    options = {"scale": [1.0, 1.5], "accuracy": "fast", "progress": False}
+    assert "system_json" in rf.fractile_curves(rf.sweep(system, pulses, **options)).attrs
+    runs = rf.sweep(system, pulses, width=["0.5 m", "0.6 m"], **options)
     assert "system_json" not in rf.fractile_curves(runs.isel(width=1)).attrs
 
 
 def test_verdict_states_the_capacity_rather_than_the_next_grid_point():
-    """The least intensity at which half of the motions overturn is that of a run."""
+    """The least intensity at which half of the motions overturn is the intensity of a run."""
     rows = [[0.1, 0.2, 0.3, 1.0, 1.0], [0.2, 0.3, 0.6, 1.0, 1.0], [0.1, 0.1, 0.1, 0.1, 0.1]]
     fell = np.array([[0, 0, 0, 1, 1], [0, 0, 0, 1, 1], [0, 0, 0, 0, 0]], dtype=bool)
-    runs = made(rows, fell).assign_coords(scale=[0.5, 1.0, 1.5, 1.9991, 2.5])
+    runs = synthetic_runs(rows, fell).assign_coords(scale=[0.5, 1.0, 1.5, 1.9991, 2.5])
     verdict = rf.fractile_curves(runs).attrs["verdict"]
     assert verdict.endswith(
         "Of 3 motions 2 overturned at some scale from 0.5 to 2.5, half of them at 1.999."
@@ -135,7 +135,7 @@ def test_verdict_states_the_capacity_rather_than_the_next_grid_point():
 
 
 def test_overturning_between_curve_points_is_counted():
-    """One that is narrower than the distance of the points at which curves are given."""
+    """The gap is narrower than the spacing of the points of the curves."""
     runs = rf.incremental_dynamic_analysis(
         SYSTEM, rf.GroundMotion.sine_pulse("4 m/s^2", "1 Hz"), scale=[0.5, 1, 1.5, 2, 50],
         free_vibration="5 s", progress=False,
@@ -145,9 +145,9 @@ def test_overturning_between_curve_points_is_counted():
 
 
 def test_omitted_runs_are_reported():
-    runs = made([[0.1, 0.2, 0.3, 0.4, 0.5]] * 2, np.zeros((2, 5), dtype=bool))
-    whole = rf.fractile_curves(runs).attrs["verdict"]
+    runs = synthetic_runs([[0.1, 0.2, 0.3, 0.4, 0.5]] * 2, np.zeros((2, 5), dtype=bool))
+    total = rf.fractile_curves(runs).attrs["verdict"]
     status = runs["status"].copy()
     status[0, 2] = RunStatus.NOT_RUN
-    told = rf.fractile_curves(runs.assign(status=status)).attrs["verdict"]
-    assert told == f"{whole} 1 of 10 runs is left out, without a verdict, intensity or response."
+    verdict = rf.fractile_curves(runs.assign(status=status)).attrs["verdict"]
+    assert verdict == f"{total} 1 of 10 runs is left out, without a verdict, intensity or response."

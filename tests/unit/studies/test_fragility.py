@@ -1,4 +1,4 @@
-"""Fragilities: Baker's numbers, brute force, coverage, and what has no fit."""
+"""Fragilities: Baker's numbers, brute force, coverage, and samples without a fit."""
 
 import numpy as np
 import pandas as pd
@@ -18,13 +18,13 @@ EXCEEDED = [0, 0, 0, 4, 6, 13, 12, 16]
 GRAVITY = 9.80665
 
 
-def of_counts(intensity, exceeded, trials, measure="PGA", **options):
+def fragility_of_counts(intensity, exceeded, trials, measure="PGA", **options):
     counts = {"intensity": intensity, "exceeded": exceeded, "trials": trials}
     return rf.fragility(counts, measure, **options)
 
 
-def of_baker(**options):
-    return of_counts((LEVELS, "g_0"), EXCEEDED, 40, **options)
+def fragility_of_baker(**options):
+    return fragility_of_counts((LEVELS, "g_0"), EXCEEDED, 40, **options)
 
 
 def parameters(found):
@@ -33,7 +33,7 @@ def parameters(found):
 
 
 def test_fit_reproduces_published_baker_example():
-    found = of_baker()
+    found = fragility_of_baker()
     assert found.median_intensity.item() / GRAVITY == pytest.approx(1.0761158, abs=6e-8)
     assert found.dispersion.item() == pytest.approx(0.4292372, abs=6e-8)
     assert found.log_median_error.item() == pytest.approx(0.07166, abs=6e-6)
@@ -46,8 +46,8 @@ def test_fit_reproduces_published_baker_example():
 
 
 def test_profile_intervals_match_brute_force():
-    """For each value of a parameter the other one is chosen anew."""
-    found = of_baker(confidence=0.9)
+    """The other parameter is optimised anew for each value of one parameter."""
+    found = fragility_of_baker(confidence=0.9)
     logs, over = np.log(LEVELS), np.array(EXCEEDED)
 
     def fall(median, spread):
@@ -82,14 +82,14 @@ def test_clopper_pearson_bounds_match_scipy():
         exact = stats.binomtest(over, count).proportion_ci(0.95, method="exact")
         assert (low, high) == pytest.approx((exact.low, exact.high), abs=1e-12)
     assert list(clopper_pearson(np.array([0]), np.array([0]), 0.9)) == [[0.0], [1.0]]
-    found = of_baker()
+    found = fragility_of_baker()
     assert found.stripe_exceedances.values.tolist() == EXCEEDED
     assert found.stripe_trials.values.tolist() == [40] * 8
     assert found.stripe_intensity.values == pytest.approx(np.array(LEVELS) * GRAVITY)
 
 
 def test_bracketed_capacities_are_fitted_as_censored_lognormals():
-    """Narrow brackets give the mean and the deviation of logarithms; open ends are censored."""
+    """Narrow brackets give mean and standard deviation of logarithms; open ends are censored."""
     rng = np.random.default_rng(3)
     logs = rng.normal(0.4, 0.3, 60)
     every, none = np.ones(60, dtype=bool), np.zeros(60, dtype=bool)
@@ -154,7 +154,7 @@ def test_likelihood_is_accurate_in_the_tails():
 
 @pytest.mark.wide
 def test_sandwich_bands_have_nominal_coverage():
-    """Clusters of dependent trials: bands that take them for independent are too narrow."""
+    """Bands that assume independence are too narrow for clusters of dependent trials."""
     rng = np.random.default_rng(11)
     levels = np.log(np.geomspace(0.3, 3.0, 8))
     held = {Bands.PROFILE: 0, Bands.SANDWICH: 0}
@@ -194,34 +194,34 @@ def test_counts_without_a_fit_have_a_status():
         FragilityStatus.NOT_RISING: [4, 3, 1],
     }
     for status, over in cases.items():
-        found = of_counts(([1.0, 2.0, 4.0], "m/s^2"), over, 5)
+        found = fragility_of_counts(([1.0, 2.0, 4.0], "m/s^2"), over, 5)
         assert found.fragility_status.item() == status, status
         if status != FragilityStatus.SEPARATED:
             assert np.isnan(found.median_intensity.item())
-    found = of_counts(([1.0, 2.0, 4.0], "m/s^2"), [0, 0, 5], 5)
+    found = fragility_of_counts(([1.0, 2.0, 4.0], "m/s^2"), [0, 0, 5], 5)
     assert found.dispersion.item() == 0.0
     assert found.median_intensity.item() == pytest.approx(np.sqrt(8.0))
     gap = found.separation_lower_intensity.item(), found.separation_upper_intensity.item()
     assert gap == pytest.approx((2.0, 4.0))
     assert set(found.exceedance_probability.values.tolist()) == {0.0, 1.0}
-    # five at each end: with more than 0.68 none of them exceeds at 2, or all do at 4
+    # five at each end: with probability above 0.68 none exceeds at 2, or all do at 4
     assert found.median_intensity_lower_bound.item() == pytest.approx(2.0)
     assert found.median_intensity_upper_bound.item() == pytest.approx(4.0)
-    few = of_counts(([1.0, 2.0, 4.0], "m/s^2"), [0, 0, 1], 1)
+    few = fragility_of_counts(([1.0, 2.0, 4.0], "m/s^2"), [0, 0, 1], 1)
     bounds = [few[name] for name in few if str(name).endswith("_bound")]
     assert all(np.isnan(one).all() for one in bounds if not one.name.startswith("stripe"))
-    for rounding in (0.0, 1e-15):  # of motions that were scaled to the intensity
-        one = of_counts(([2.0, 2.0 + rounding, 2.0], "m/s^2"), [1, 2, 3], 5)
+    for rounding in (0.0, 1e-15):  # as for motions scaled to the intensity
+        one = fragility_of_counts(([2.0, 2.0 + rounding, 2.0], "m/s^2"), [1, 2, 3], 5)
         assert one.fragility_status.item() == FragilityStatus.ONE_INTENSITY
-    reversed_ = of_counts(([1.0, 2.0], "m/s^2"), [5, 0], 5)
+    reversed_ = fragility_of_counts(([1.0, 2.0], "m/s^2"), [5, 0], 5)
     assert reversed_.fragility_status.item() == FragilityStatus.NOT_RISING
 
 
 def test_equal_shares_at_all_intensities_do_not_rise():
-    """The likelihood is greatest at a slope of zero, of which rounding leaves some 1e-15."""
+    """The likelihood is greatest at a slope of zero, up to rounding of about 1e-15."""
     for over, trials in ((7, 16), (8, 16), (1, 3)):
         for levels in ([2.151, 2.456], [0.1, 0.3, 7.0]):
-            found = of_counts((levels, "m/s^2"), [over] * len(levels), trials)
+            found = fragility_of_counts((levels, "m/s^2"), [over] * len(levels), trials)
             assert found.fragility_status.item() == FragilityStatus.NOT_RISING
             assert np.isnan(found.median_intensity.item())
 
@@ -229,12 +229,12 @@ def test_equal_shares_at_all_intensities_do_not_rise():
 def test_bad_counts_are_refused():
     for unit in ("furlong", "m/s"):
         with pytest.raises(UnitsError, match="is in m s"):
-            of_counts(([1.0], unit), [1], 2)
+            fragility_of_counts(([1.0], unit), [1], 2)
     for over, count in (([3], 2), ([-1], 2), ([0.5], 2), ([1, 1], 2)):
         with pytest.raises(ComponentError, match="number of exceedances"):
-            of_counts((["1 m/s^2"]), over, count)
+            fragility_of_counts((["1 m/s^2"]), over, count)
     with pytest.raises(ComponentError, match="bands"):
-        of_baker(bands="wide")
+        fragility_of_baker(bands="wide")
     with pytest.raises(SchemaError, match="no sweep"):
         rf.fragility(xr.Dataset())
 
@@ -329,8 +329,8 @@ def test_custom_measure_is_aligned_by_labels(runs):
     own = (measure.peak_ground_velocity * runs.scale).rename("mine").assign_attrs(units="m s^-1")
     expected = rf.fragility(runs, own)
     more = xr.concat([own, own.isel(motion=[0]).assign_coords(motion=["none"])], "motion")
-    for given in (own.isel(motion=slice(None, None, -1)), more.rename("mine")):
-        found = rf.fragility(runs, given)
+    for intensity in (own.isel(motion=slice(None, None, -1)), more.rename("mine")):
+        found = rf.fragility(runs, intensity)
         np.testing.assert_array_equal(found.median_intensity, expected.median_intensity)
     with pytest.raises(ComponentError, match="has 2 values along 'motion', of which"):
         rf.fragility(runs, own.drop_vars("motion").isel(motion=slice(2)))
@@ -406,14 +406,14 @@ def test_openquake_reads_the_same_probabilities(runs, tmp_path):
 
 def test_pelicun_samples_damage_at_the_exported_probability(tmp_path):
     pelicun = pytest.importorskip("pelicun.assessment", reason="needs pelicun")
-    found = of_counts(([0.2, 0.3, 0.4, 0.6, 0.8], "g_0"), [1, 4, 6, 13, 16], 20)
+    found = fragility_of_counts(([0.2, 0.3, 0.4, 0.6, 0.8], "g_0"), [1, 4, 6, 13, 16], 20)
     rf.export.to_pelicun(found, "cabinet").to_csv(tmp_path / "library.csv")
     library = pd.read_csv(tmp_path / "library.csv", index_col="ID")
     library = library.drop(columns="LS1-DamageStateWeights")
     heads = [(*name.split("-", 1), "")[:2] for name in library.columns]
     library.columns = pd.MultiIndex.from_tuples(heads)
     size, demand = 4000, 0.8 * found.median_intensity.item() / GRAVITY
-    # the block is on the first axis of a plan; along the second hardly anything moves
+    # the block rocks along the first axis of a plan; along the second motion is negligible
     axes = [("PGA", "0", "1"), ("PGA", "0", "2")]
     columns = pd.MultiIndex.from_tuples(axes, names=["type", "loc", "dir"])
     units = pd.DataFrame([["g", "g"]], columns=columns, index=["Units"])
@@ -438,7 +438,7 @@ def test_openquake_export_writes_a_fragility_model(runs, tmp_path):
     from lxml import etree
 
     found = rf.fragility(runs, "PGA", limits=[0.3])
-    baker = of_baker()
+    baker = fragility_of_baker()
     with pytest.raises(ComponentError, match="same limit states"):
         rf.export.to_openquake({"block": found, "baker": baker}, tmp_path / "f.xml")
     file = rf.export.to_openquake({"block": found, "other": found}, tmp_path / "f.xml")

@@ -1,4 +1,4 @@
-"""Bounds of fragilities: covariances by hand, how often they hold, and what is said of them."""
+"""Bounds of fragilities: covariances by hand, coverage, and warnings."""
 
 import numpy as np
 import pytest
@@ -17,14 +17,14 @@ MEASURE = ("peak_ground_acceleration", {"units": "m s^-2"})
 
 
 def runs_of(rng, motions, dispersion):
-    """Every motion at all scales, a lognormal capacity of median 1 for each."""
+    """Return runs of motions at all scales, with lognormal capacities of median 1."""
     logs = rng.normal(np.log(0.5), 0.4, motions)[:, None] + np.log(SCALES)
     over = logs > rng.normal(0.0, dispersion, motions)[:, None]
     return logs.ravel(), over.ravel().astype(float), np.repeat(np.arange(motions), len(SCALES))
 
 
-def by_hand(logs, over, cluster):
-    """The sandwich of a probit regression, from its definition."""
+def sandwich_fit(logs, over, cluster):
+    """Return fit and sandwich covariance of a probit regression, from the definition."""
     rows = np.column_stack([np.ones(len(logs)), logs])
 
     def loss(at):
@@ -51,7 +51,7 @@ def by_hand(logs, over, cluster):
 def test_sandwich_covariance_follows_its_definition(motions):
     """The factor for few clusters is 1.5 with three of them, 1.2 with six."""
     logs, over, cluster = runs_of(np.random.default_rng(4), motions, 0.5)
-    best, covariance = by_hand(logs, over, cluster)
+    best, covariance = sandwich_fit(logs, over, cluster)
     found = fit(Trials.from_verdicts(logs[:, None], over, np.ones(len(over)), cluster),
                 Bands.SANDWICH)  # fmt: skip
     assert found.coefficients == pytest.approx(best, rel=1e-5, abs=1e-6)
@@ -64,7 +64,7 @@ def test_sandwich_of_counts_treats_each_trial_as_a_cluster():
     each = [(one, 1.0) for one, k in zip(logs, over, strict=True) for _ in range(int(k))]
     each += [(one, 0.0) for one, k in zip(logs, count - over, strict=True) for _ in range(int(k))]
     alone, verdict = np.array(each).T
-    best, covariance = by_hand(alone, verdict, np.arange(len(alone)))
+    best, covariance = sandwich_fit(alone, verdict, np.arange(len(alone)))
     assert found.coefficients == pytest.approx(best, rel=1e-5, abs=1e-6)
     assert found.covariance == pytest.approx(covariance, rel=1e-4, abs=1e-6)
 
@@ -74,7 +74,10 @@ def test_the_jackknife_leaves_out_each_motion_in_turn():
     trials = Trials.from_verdicts(logs[:, None], over, np.ones(len(over)), cluster)
     found = fit(trials, Bands.JACKKNIFE)
     rows = np.array(
-        [by_hand(*(each[cluster != one] for each in (logs, over, cluster)))[0] for one in range(6)]
+        [
+            sandwich_fit(*(each[cluster != one] for each in (logs, over, cluster)))[0]
+            for one in range(6)
+        ]
     )
     assert found.leave_one_out[0] == pytest.approx(rows, rel=1e-4, abs=1e-5)
     spread = rows - found.coefficients
@@ -82,7 +85,7 @@ def test_the_jackknife_leaves_out_each_motion_in_turn():
 
 
 def test_jackknife_bounds_follow_their_definition():
-    """Student's t of the motions but one, about a dispersion that is not too small on average."""
+    """Student's t with one degree of freedom less than motions, about an unbiased dispersion."""
     motions = 6
     logs, over, cluster = runs_of(np.random.default_rng(4), motions, 0.5)
     trials = Trials.from_verdicts(logs[:, None], over, np.ones(len(over)), cluster)
@@ -91,14 +94,14 @@ def test_jackknife_bounds_follow_their_definition():
         BoundSettings(Bands.JACKKNIFE, 0.9), {"trials": "runs"},
     ).isel(limit_state=0)  # fmt: skip
 
-    def estimates(kept):
-        (intercept, slope), _ = by_hand(logs[kept], over[kept], cluster[kept])
+    def estimates(included):
+        (intercept, slope), _ = sandwich_fit(logs[included], over[included], cluster[included])
         return np.array([-intercept / slope, -np.log(slope)])
 
     every = estimates(cluster >= 0)
     rest = np.array([estimates(cluster != one) for one in range(motions)])
     errors = np.sqrt((motions - 1.0) / motions * ((rest - every) ** 2).sum(axis=0))
-    # what the logarithm of the deviation of as many known capacities lacks
+    # the bias of the logarithm of the standard deviation of as many known capacities
     lacking = -0.5 * stats.chi2(motions - 1).expect(lambda q: np.log(q / motions))
     reach = stats.t.ppf(0.95, motions - 1) * errors
     for name, middle, error in zip(
@@ -111,7 +114,7 @@ def test_jackknife_bounds_follow_their_definition():
 
 @pytest.mark.long
 def test_bounds_by_jackknife_hold_with_few_motions():
-    """Of five motions; the samples of them that an intensity separates have none."""
+    """With five motions; samples that an intensity separates have no bounds."""
     rng, samples = np.random.default_rng(9), []
     for _ in range(200):
         logs, over, cluster = runs_of(rng, 5, 0.4)
@@ -124,7 +127,7 @@ def test_bounds_by_jackknife_hold_with_few_motions():
 
 
 def test_separated_counts_have_the_bounds_of_their_likelihood():
-    """Where 3 of 5 exceed at one intensity, none below and all above, that is the median."""
+    """If 3 of 5 exceed at one intensity, none below and all above, that intensity is the median."""
     found = rf.fragility(
         {"intensity": ([1.0, 2.0, 3.0, 4.0], "m/s^2"), "exceeded": [0, 0, 3, 5], "trials": 5}
     )
@@ -147,7 +150,7 @@ def test_separated_counts_have_the_bounds_of_their_likelihood():
 
 
 def test_separated_single_runs_have_bounds_with_coverage():
-    """One sample in three of ten runs is separated, and has bounds like the others."""
+    """One in three samples of ten runs is separated, and has bounds like the others."""
     rng, samples, runs = np.random.default_rng(5), [], 10
     for _ in range(150):
         logs = 0.6 * rng.standard_normal(runs)
@@ -167,7 +170,7 @@ def test_separated_single_runs_have_bounds_with_coverage():
 
 
 def test_bracketed_capacities_have_likelihood_bounds():
-    """Rays towards slopes below zero, where brackets have no likelihood, end before these."""
+    """Rays towards negative slopes, where brackets have no likelihood, end before them."""
     ends = np.log([[0.80, 0.75, 1.11, 0.54, 0.85], [1.07, 1.00, 1.67, 1.08, 1.28]])
     lower, upper = ends[:, :, None]
     known = np.ones(5, dtype=bool)
@@ -189,7 +192,7 @@ def test_bracketed_capacities_have_likelihood_bounds():
 
 
 def held(samples, dispersion, bands):
-    """Shares of samples in which the bounds hold the median, 1, and the dispersion."""
+    """Return the shares of samples whose bounds contain the median, 1, and the dispersion."""
     found = fragility_dataset(
         [StructureTrials(trials, None, 0, independent) for trials, independent in samples],
         {"limit_state": len(samples)}, [MEASURE], BoundSettings(bands, 0.95), {"trials": "runs"},
@@ -213,18 +216,20 @@ def test_sandwich_bounds_have_documented_coverage(motions):
         trials = Trials.from_verdicts(logs[:, None], over, np.ones(len(over)), cluster)
         samples.append((trials, motions))
     shares, count = held(samples, 0.4, Bands.SANDWICH)
-    for share, said in zip(shares, COVERAGE[Bands.SANDWICH][motions], strict=True):
-        assert share == pytest.approx(said, abs=3.0 * np.sqrt(said * (1.0 - said) / count))
+    for share, documented in zip(shares, COVERAGE[Bands.SANDWICH][motions], strict=True):
+        assert share == pytest.approx(
+            documented, abs=3.0 * np.sqrt(documented * (1.0 - documented) / count)
+        )
 
 
 @pytest.mark.parametrize("count", [5, 10])
 def test_profile_bounds_have_documented_coverage(count):
-    """Of known capacities that follows from Student's and from the chi-squared distribution."""
-    said = COVERAGE[Bands.PROFILE][count]
+    """For known capacities, coverage follows from Student's t and the chi-squared distribution."""
+    documented = COVERAGE[Bands.PROFILE][count]
     drop = stats.chi2.ppf(0.95, 1)
     # the likelihood ratio of a mean is n ln(1 + t^2 / (n - 1))
     reach = np.sqrt((count - 1) * np.expm1(drop / count))
-    assert said.median == pytest.approx(2.0 * stats.t.cdf(reach, count - 1) - 1.0, abs=0.006)
+    assert documented.median == pytest.approx(2.0 * stats.t.cdf(reach, count - 1) - 1.0, abs=0.006)
 
     # that of a deviation depends on n s^2 / beta^2, chi-squared with n - 1 degrees of freedom
     def ratio(q):
@@ -232,7 +237,7 @@ def test_profile_bounds_have_documented_coverage(count):
 
     ends = [optimize.brentq(ratio, 1e-6, count), optimize.brentq(ratio, count, 20.0 * count)]
     exact = np.diff(stats.chi2.cdf(ends, count - 1)).item()
-    assert said.dispersion == pytest.approx(exact, abs=0.006)
+    assert documented.dispersion == pytest.approx(exact, abs=0.006)
 
 
 def test_too_few_motions_have_no_bounds():
@@ -254,21 +259,23 @@ def test_too_few_motions_have_no_bounds():
 
 
 def test_verdict_describes_quality_of_bounds():
-    def said(bands, independent, trials=200, confidence=0.95, **more):
+    def statement(bands, independent, trials=200, confidence=0.95, **more):
         counts = np.array([independent]), np.array([trials])
         return " ".join(bound_sentences(bands, confidence, *counts, kind="motions", **more))
 
-    assert said(Bands.SANDWICH, 6) == ("There are no bounds: 6 motions are too few, 10 are needed.")
-    assert said(Bands.SANDWICH, 12, confidence=0.9) == (
+    assert statement(Bands.SANDWICH, 6) == (
+        "There are no bounds: 6 motions are too few, 10 are needed."
+    )
+    assert statement(Bands.SANDWICH, 12, confidence=0.9) == (
         "With 12 motions bounds of nominal 90 % are too narrow: of 10, those of 95 % held the "
         "median in 89 %, the dispersion in 80 % of simulated samples."
     )
-    assert said(Bands.SANDWICH, 12, measures=2) == (
+    assert statement(Bands.SANDWICH, 12, measures=2) == (
         "With 12 motions bounds of nominal 95 % are too narrow."
     )
-    assert said(Bands.SANDWICH, 80) == ""
-    assert "for independent" in said(Bands.PROFILE, 20)
-    assert said(Bands.PROFILE, 20, trials=20) == ""
+    assert statement(Bands.SANDWICH, 80) == ""
+    assert "for independent" in statement(Bands.PROFILE, 20)
+    assert statement(Bands.PROFILE, 20, trials=20) == ""
     counted = rf.fragility(
         {"intensity": ([1.0, 2.0, 4.0], "m/s^2"), "exceeded": [0, 1, 1], "trials": 1}
     )

@@ -1,4 +1,4 @@
-"""Fragilities with one dispersion: an independent fit, curves in order, what is refused."""
+"""Fragilities with one dispersion: an independent fit, ordered curves, refusals."""
 
 import itertools
 
@@ -60,7 +60,7 @@ def test_single_limit_state_reduces_to_the_usual_fit():
 
 @pytest.mark.long
 def test_jackknife_bounds_cover_median_and_dispersion():
-    """Of 60 samples of 40 runs, by the jackknife, on logarithms: nominal 95 %."""
+    """60 samples of 40 runs, jackknife bounds on logarithms, nominally 95 %."""
     held = np.zeros(2)
     for seed in range(60):
         logs, verdicts = sample(100 + seed, 40)
@@ -133,15 +133,15 @@ def test_unordered_limit_states_are_refused():
 
 
 def test_leave_one_out_merges_limit_states_exceeded_by_the_same_runs():
-    """Without the one run that exceeds only the first, nothing keeps the two in order."""
+    """Without the one run that exceeds only the first limit state, both coincide."""
     logs = np.array([-1.2, -0.9, -0.5, -0.3, 0.0, 0.2, 0.3, 0.6, 0.8, 1.1, 1.3])
     count = np.array([0, 0, 0, 2, 1, 0, 2, 0, 2, 2, 2])
     verdicts = np.stack([count > 0, count > 1]).astype(float)
     motions = np.arange(len(logs))
     first, second = ordered_fits(logs, verdicts, motions, NAMES[:2], Bands.JACKKNIFE)
-    kept = count != 1
+    included = count != 1
     one = Trials.from_verdicts(
-        logs[kept, None], verdicts[0, kept], np.ones(kept.sum()), motions[kept]
+        logs[included, None], verdicts[0, included], np.ones(included.sum()), motions[included]
     )
     expected = fit(one, Bands.PROFILE).coefficients
     for state in (first, second):

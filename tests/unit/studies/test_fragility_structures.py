@@ -1,4 +1,4 @@
-"""Fragilities of several structures: a curve for each, and none from what is no sweep."""
+"""Fragilities of several structures: a curve for each; other datasets are refused."""
 
 import numpy as np
 import pytest
@@ -9,7 +9,7 @@ from rockframe.errors import ComponentError, SchemaError, StudyError
 from rockframe.results.variables.runs import RunStatus
 
 SYSTEM = rf.System(rf.Block(width="0.5 m", height="2 m", mass="400 kg"))
-HOW = {"accuracy": "fast", "free_vibration": "3 s", "progress": False}
+OPTIONS = {"accuracy": "fast", "free_vibration": "3 s", "progress": False}
 SCALES = [0.5, 1.0, 2.0, 3.0, 5.0, 8.0, 12.0]
 
 
@@ -20,11 +20,11 @@ def motions(first=0, count=6):
 
 @pytest.fixture(scope="module")
 def runs():
-    return rf.sweep(SYSTEM, motions(), scale=SCALES, width=["0.4 m", "0.5 m", "0.8 m"], **HOW)
+    return rf.sweep(SYSTEM, motions(), scale=SCALES, width=["0.4 m", "0.5 m", "0.8 m"], **OPTIONS)
 
 
 def fail(runs, **place):
-    """Make runs of a sweep ones that have no result."""
+    """Return a sweep in which the runs at one place have no result."""
     runs.status[place] = RunStatus.REFUSED
     runs.peak_relative_rotation[place] = np.nan
 
@@ -58,10 +58,10 @@ def test_structures_are_pooled_on_request(runs):
     assert found.attrs["pooled"] == "width"
     assert "(pooled over width)" in found.verdict
     assert found.trial_count.item() == runs.status.size
-    # the differences of the structures are in its dispersion
+    # its dispersion includes the differences of the structures
     alone = rf.fragility(runs, "PGV", limits=())
     assert found.dispersion.item() > 1.3 * alone.dispersion.max().item()
-    # a motion is run once for each structure, and once more for each that is pooled
+    # each structure has one run per motion; pooled ones have several, which are dependent
     once = runs.isel(scale=[3])
     assert rf.fragility(once, "PGV").attrs["bands"] == "profile"
     assert rf.fragility(once, "PGV", pooled="width").attrs["bands"] == "jackknife"
@@ -73,7 +73,7 @@ def test_structures_are_pooled_on_request(runs):
 
 def test_equal_table_rows_belong_to_one_structure(runs):
     widths = ["0.4 m"] * len(SCALES) + ["0.8 m"] * len(SCALES)
-    table = rf.sweep(SYSTEM, motions(), cases={"width": widths, "scale": SCALES * 2}, **HOW)
+    table = rf.sweep(SYSTEM, motions(), cases={"width": widths, "scale": SCALES * 2}, **OPTIONS)
     found = rf.fragility(table, "PGV", limits=())
     assert found.case.values.tolist() == [0, len(SCALES)]
     assert found.width.values.tolist() == [0.4, 0.8]
@@ -83,7 +83,9 @@ def test_equal_table_rows_belong_to_one_structure(runs):
     assert turned.case.values.tolist() == [len(SCALES), 0]
     assert turned.width.values.tolist() == [0.8, 0.4]
     assert turned.median_intensity.values.tolist() == found.median_intensity.values[::-1].tolist()
-    apart = rf.sweep(SYSTEM, motions(), scale=SCALES, cases={"width": ["0.4 m", "0.8 m"]}, **HOW)
+    apart = rf.sweep(
+        SYSTEM, motions(), scale=SCALES, cases={"width": ["0.4 m", "0.8 m"]}, **OPTIONS
+    )
     assert_same_fit(rf.fragility(apart, "PGV", limits=()), found)
     both = rf.fragility(apart, "PGV", limits=(), pooled="width")
     assert both.trial_count.item() == apart.status.size
@@ -94,14 +96,14 @@ def test_equal_table_rows_belong_to_one_structure(runs):
 
 def test_dimensions_of_analyses_are_structures_or_motions():
     spectrum = rf.rocking_spectrum(
-        SYSTEM, motions(), periods=([2, 4, 6], "s"), slenderness=[3, 5], **HOW
+        SYSTEM, motions(), periods=([2, 4, 6], "s"), slenderness=[3, 5], **OPTIONS
     )
     found = rf.fragility(spectrum, limits=())
     assert found.median_intensity.dims == ("slenderness", "rocking_period", "limit_state")
     assert found.width.dims == ("slenderness", "rocking_period")
     pulses = rf.overturning_map(
         SYSTEM, rf.GroundMotion.sine_pulse, amplitude=([2, 4, 6], "m/s^2"),
-        frequency=([1, 2], "Hz"), **HOW,
+        frequency=([1, 2], "Hz"), **OPTIONS,
     )  # fmt: skip
     assert rf.fragility(pulses, limits=()).median_intensity.dims == ("limit_state",)
 
@@ -114,20 +116,22 @@ def test_axis_used_as_intensity_does_not_separate_structures(runs):
 
 
 def test_one_structure_per_run_is_refused():
-    drawn = rf.probability_of_overturning(
-        SYSTEM, motions(), cases=30, **HOW,
+    sample = rf.probability_of_overturning(
+        SYSTEM, motions(), cases=30, **OPTIONS,
         spread={"width": ("uniform", "0.4 m", "0.6 m"), "scale": ("uniform", 1.0, 8.0)},
     )  # fmt: skip
     with pytest.raises(ComponentError, match=r"pooled=\('width',\) takes all"):
-        rf.fragility(drawn)
-    assert rf.fragility(drawn, limits=(), pooled="width").trial_count.item() == 30
+        rf.fragility(sample)
+    assert rf.fragility(sample, limits=(), pooled="width").trial_count.item() == 30
 
 
 def test_concatenated_runs_and_sweeps_are_refused(runs):
-    one, other = (rf.sweep(SYSTEM, motions(first), scale=SCALES[:3], **HOW) for first in (0, 10))
+    one, other = (
+        rf.sweep(SYSTEM, motions(first), scale=SCALES[:3], **OPTIONS) for first in (0, 10)
+    )
     run = SYSTEM.simulate(motions()["seed 0"])
     joined = rf.concat([run, SYSTEM.simulate(motions()["seed 1"])], "motion")
-    for given, kind, said in (
+    for dataset, kind, words in (
         (run, SchemaError, "found a single run, which is no sweep"),
         (joined, SchemaError, "found joined runs, which is no sweep"),
         (
@@ -142,14 +146,14 @@ def test_concatenated_runs_and_sweeps_are_refused(runs):
         ),
         (xr.concat([one, one], "motion"), StudyError, "'seed 0' stands twice along 'motion'"),
     ):
-        with pytest.raises(kind, match=said):
-            rf.fragility(given)
+        with pytest.raises(kind, match=words):
+            rf.fragility(dataset)
     for twice in (("PGA", "PGA"), ("PGA", "peak_ground_acceleration")):
         with pytest.raises(ComponentError, match="are one, peak_ground_acceleration"):
             rf.fragility(one, twice)
-    both = rf.sweep(SYSTEM, {**motions(0), **motions(10)}, scale=SCALES[:3], **HOW)
+    both = rf.sweep(SYSTEM, {**motions(0), **motions(10)}, scale=SCALES[:3], **OPTIONS)
     assert_same_fit(rf.fragility(rf.concat([one, other], "motion")), rf.fragility(both))
-    # what an axis goes on with is one sweep, and numbers of one's own need no motions
+    # parts joined along an axis of a sweep are one sweep; user-defined measures need no motions
     split = [runs.isel(scale=slice(0, 3)), runs.isel(scale=slice(3, None))]
     assert_same_fit(rf.fragility(xr.concat(split, "scale")), rf.fragility(runs))
     own = rf.fragility(xr.concat([one, one], "suite"), one.scale, limits=())
@@ -169,9 +173,9 @@ def test_runs_without_a_verdict_are_counted(runs):
 
 @pytest.mark.long
 def test_unknown_capacities_are_omitted():
-    """A motion whose runs failed is none that the block withstood."""
+    """A motion whose runs failed is not counted as withstood."""
     analysis = rf.incremental_dynamic_analysis(
-        SYSTEM, motions(count=12), scale=[1.0, 3.0, 6.0, 12.0], **HOW
+        SYSTEM, motions(count=12), scale=[1.0, 3.0, 6.0, 12.0], **OPTIONS
     )
     all_known = rf.fragility(analysis, trials="capacities")
     lacking = analysis.copy(deep=True)
@@ -183,7 +187,7 @@ def test_unknown_capacities_are_omitted():
     assert found.left_out_count.item() == 1
     assert found.trial_count.item() == 11
     assert "1 of 12 capacities are left out" in found.verdict
-    # of motion 1 it is known that it withstood the least scale, and no more
+    # for motion 1 only the least scale is known to be withstood
     without = rf.fragility(lacking.isel(motion=slice(2, None)), trials="capacities")
     assert found.median_intensity.item() == pytest.approx(without.median_intensity.item(), rel=0.02)
     assert all_known.left_out_count.item() == 0
@@ -214,16 +218,16 @@ def test_figures_distinguish_structures(runs):
     names = [text.get_text() for text in panels.figure.legends[0].get_texts()]
     assert names == ["width 0.4 m", "width 0.5 m", "width 0.8 m"]
     axes = rf.plot.fragility(found.isel(width=1))
-    told = axes.figure.get_suptitle().replace("\n", " ")
-    assert f"{found.median_intensity[1, 1].item():.4g}" in told
-    assert "structures" not in told
+    title = axes.figure.get_suptitle().replace("\n", " ")
+    assert f"{found.median_intensity[1, 1].item():.4g}" in title
+    assert "structures" not in title
     with pytest.raises(SchemaError, match="found 3 structures, by width; a figure shows 1"):
         rf.plot.fragility(rf.fragility(runs, ("PGA", "PGV"), limits=()))
     pyplot.close("all")
 
 
 def test_an_axis_with_the_name_of_the_measure_is_refused() -> None:
-    """It is an argument of the function, and no peak of the motions."""
+    """The intensity is an argument of the scene function, not a peak of the motions."""
     system = rf.System(rf.Block(width="0.5 m", height="2 m", mass="400 kg"))
     pulse = rf.GroundMotion.sine_pulse("3 m/s^2", "1 Hz")
     runs = rf.sweep(
@@ -235,7 +239,7 @@ def test_an_axis_with_the_name_of_the_measure_is_refused() -> None:
 
 
 def test_measure_named_like_an_axis_does_not_replace_the_axis(runs) -> None:
-    """Runs of all widths counted as those of one structure."""
+    """Runs of all widths were once counted as those of one structure."""
     own = xr.DataArray(np.arange(1.0, 7.0), dims="motion", name="width", attrs={"units": "m"})
     with pytest.raises(ComponentError, match="differ along width, which is also the name"):
         rf.fragility(runs, own)
@@ -245,6 +249,6 @@ def test_measure_named_like_an_axis_does_not_replace_the_axis(runs) -> None:
 
 
 def test_means_of_runs_are_refused(runs) -> None:
-    """The mean of the statuses of a run that stands and one that lies flat is a third one's."""
+    """The mean of two status numbers is the number of a third status."""
     with xr.set_options(keep_attrs=True), pytest.raises(SchemaError, match="means of runs"):
         rf.fragility(runs.mean("width"), "PGA")

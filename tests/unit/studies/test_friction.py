@@ -1,4 +1,4 @@
-"""Friction that a base is said to have: studies are held to it, as single runs are."""
+"""Studies check whether a base would slide, as single runs do."""
 
 import numpy as np
 import pytest
@@ -16,19 +16,19 @@ PULSE = rf.GroundMotion.sine_pulse("4 m/s^2", "1.2 Hz")
 SLIDES = "the block would slide from"
 
 
-def texts_of(runs):
-    """Return what is said of each case."""
+def messages_of(runs):
+    """Return the message of each case."""
     return runs.message.to_numpy().squeeze()
 
 
 def test_friction_warning_does_not_depend_on_histories():
-    with pytest.warns(ModelWarning, match=f"{SLIDES} .* of 0.2, ") as told:
-        whole = SLIPPERY.simulate(PULSE, free_vibration="3 s")
+    with pytest.warns(ModelWarning, match=f"{SLIDES} .* of 0.2, ") as caught:
+        run = SLIPPERY.simulate(PULSE, free_vibration="3 s")
     with pytest.warns(ModelWarning, match=f"{SLIDES} .* of 0.2, ") as again:
         bare = SLIPPERY.simulate(PULSE, free_vibration="3 s", outputs=None)
-    assert [str(one.message) for one in again] == [str(one.message) for one in told]
-    assert bare.attrs["cautions"] == whole.attrs["cautions"]
-    assert bare.peak_friction_demand.item() == whole.peak_friction_demand.item()
+    assert [str(one.message) for one in again] == [str(one.message) for one in caught]
+    assert bare.attrs["cautions"] == run.attrs["cautions"]
+    assert bare.peak_friction_demand.item() == run.peak_friction_demand.item()
     assert "time" not in bare.sizes
     without = rf.System(BLOCK).simulate(PULSE, free_vibration="3 s", outputs=None)
     assert "peak_friction_demand" not in without
@@ -47,12 +47,12 @@ def test_friction_warning_does_not_depend_on_histories():
 def test_sweep_cases_report_the_friction_of_single_runs(base):
     system = rf.System(BLOCK, base, sliding="checked")
     frictions = [0.1, 0.5, 10.0]
-    most = f"({SLIDES}|the run ends while)"  # on soil more cases still swing than would slide
+    most = f"({SLIDES}|the run ends while)"  # on soil more cases end in motion than would slide
     with pytest.warns(ModelWarning, match=f"cases have a result to be careful with.*{most}"):
         runs = rf.sweep(system, PULSE, friction=frictions, scale=[0.5, 1.0], accuracy="standard")
     for (scale, friction), text in zip(
         [(scale, friction) for friction in frictions for scale in (0.5, 1.0)],
-        texts_of(runs.transpose("friction", "scale", ...)).ravel(),
+        messages_of(runs.transpose("friction", "scale", ...)).ravel(),
         strict=True,
     ):
         case = rf.case(runs, friction=friction, scale=scale)
@@ -92,7 +92,7 @@ def test_friction_limited_cases_run_outside_lanes(monkeypatch, accuracy):
     lanes, alone = found
     assert lanes.drop_attrs().identical(alone.drop_attrs())
     held, free = (lanes.sel(slippery=one) for one in (True, False))
-    assert [SLIDES in text for text in texts_of(held)] == [False, True, True, True]
+    assert [SLIDES in text for text in messages_of(held)] == [False, True, True, True]
     assert (free.message == "none").all()
     np.testing.assert_array_equal(held.peak_rotation, free.peak_rotation)
 
@@ -107,10 +107,10 @@ def test_analyses_count_the_runs_that_would_slide():
     assert 0 < slide < 4
     words = f"n {slide} of 4 runs"
     assert f"; i{words} of the scan the block would slide first." in analysis.attrs["verdict"]
-    said = "the block would slide first; these count as if it were held."
-    assert f" I{words} {said}" in rf.fragility(runs).attrs["verdict"]
+    ending = "the block would slide first; these count as if it were held."
+    assert f" I{words} {ending}" in rf.fragility(runs).attrs["verdict"]
     capacities = rf.fragility(analysis, trials="capacities")
-    assert f" I{words} of the scan {said}" in capacities.attrs["verdict"]
+    assert f" I{words} of the scan {ending}" in capacities.attrs["verdict"]
     held = rf.critical_scale(ROUGH, PULSE, largest=1.6, scales=20, runs=40)
     assert f"; in none of {held.scale.size} runs the block" in held.attrs["verdict"]
     needed = rf.sweep(ROUGH, PULSE, scale=held.scale.values).peak_friction_demand
@@ -144,16 +144,16 @@ def test_analyses_warn_of_sliding():
 
 
 def test_analyses_report_slip_over_tried_scales():
-    """A block that slides instead of rocking stands at any scale; how far it goes is said."""
+    """A block that slides instead of rocking stands at any scale; its slip is reported."""
     low = rf.Block(width="1 m", height="2 m", mass="1 t")
     slides = rf.System(low, rf.RigidGround(friction=0.2))
     pulse = rf.GroundMotion.sine_pulse("2.5 m/s^2", "1 Hz")
     how = {"accuracy": "fast", "progress": False}
     scales = [0.5, 1.0, 1.5, 2.0]
     farthest = float(rf.sweep(slides, pulse, scale=scales, **how).peak_slip.max())
-    told = f"a body slid, by {farthest:.3g} m at most."
+    words = f"a body slid, by {farthest:.3g} m at most."
     analysis = rf.incremental_dynamic_analysis(slides, [pulse], scale=scales, resolution=1, **how)
-    assert f"; in 3 of 4 runs of the scan {told}" in analysis.verdict
+    assert f"; in 3 of 4 runs of the scan {words}" in analysis.verdict
     found = rf.critical_scale(slides, pulse, largest=2, scales=5, runs=5, **how)
     assert float(found.uplift_scale) == pytest.approx(0.2 * 9.80665 / 2.5)  # from slip on
-    assert f"; in 4 of 5 runs {told}" in found.verdict
+    assert f"; in 4 of 5 runs {words}" in found.verdict

@@ -1,4 +1,4 @@
-"""Annual rates: the closed form of a power law, quadrature of a table, and what lies beyond it."""
+"""Annual rates: the closed form of a power law, quadrature of a table, and its tails."""
 
 import itertools
 import math
@@ -33,7 +33,7 @@ def probability(curve, x):
 
 
 def density(x):
-    """Slope of the table between its points, from its definition; x in m/s^2."""
+    """Return the slope of the table between its points, from its definition; x in m/s^2."""
     place = np.clip(np.searchsorted(VALUES * G, x, side="right") - 1, 0, len(VALUES) - 2)
     ratio = np.log(RATES[place + 1] / RATES[place]) / np.log(VALUES[place + 1] / VALUES[place])
     return -ratio * RATES[place] * (x / (VALUES[place] * G)) ** ratio / x
@@ -62,7 +62,7 @@ def test_steep_hazard_and_wide_dispersion_match_quadrature(curve, exponent, spre
     exact = integrate.quad(contribution, *ends, epsabs=0, epsrel=1e-11, limit=200)[0]
     table = {"intensity": (np.exp(ends), "m/s^2"), "rate": 1e-3 * np.exp(-exponent * ends)}
     with warnings.catch_warnings():
-        warnings.simplefilter("ignore", ModelWarning)  # it goes on below
+        warnings.simplefilter("ignore", ModelWarning)  # the curve continues below the table
         found = rf.annual_rate(wide, table)
     assert found.annual_rate.item() == pytest.approx(exact, rel=1e-9)
     assert (found.rate_share >= 0.0).all()
@@ -79,7 +79,7 @@ def test_median_beyond_the_table_gives_zero_rate(curve):
 
 
 def test_share_outside_trials_matches_numerical_integral():
-    """Also where stripes are groups of intensities, about the middle of each."""
+    """Also for stripes that are groups of intensities, about the middle of each."""
     levels = np.geomspace(0.1, 1.5, 61)
     exceeded = np.random.default_rng(4).random(61) < ndtr(np.log(levels / 0.6) / 0.4)
     curve = rf.fragility({"intensity": (levels, "g_0"), "exceeded": exceeded, "trials": 1}, "PGA")
@@ -115,7 +115,7 @@ def test_hazard_table_integral_matches_quadrature(curve):
 
 
 def in_g(curve):
-    """Put a fragility over accelerations in g."""
+    """Return a fragility with accelerations in g."""
     names = [
         str(name) for name, one in curve.variables.items() if one.attrs.get("units") == "m s^-2"
     ]
@@ -129,14 +129,14 @@ def test_a_fragility_in_other_units_has_the_same_rate(curve):
     rate = rf.annual_rate(curve, TABLE).annual_rate.item()
     other = in_g(curve)
     name = "peak_ground_acceleration"
-    for one in (other, curve.assign_coords({name: other[name]})):  # or what is told along it alone
+    for one in (other, curve.assign_coords({name: other[name]})):  # or only its coordinate
         assert rf.annual_rate(one, TABLE).annual_rate.item() == pytest.approx(rate)
 
 
 def test_exports_do_not_depend_on_units(curve, tmp_path):
     other = in_g(curve)
-    told = rf.export.to_pelicun(other, "x")["LS1-Theta_0"].item()
-    assert told == pytest.approx(curve.median_intensity.item() / G, rel=1e-12)
+    exported = rf.export.to_pelicun(other, "x")["LS1-Theta_0"].item()
+    assert exported == pytest.approx(curve.median_intensity.item() / G, rel=1e-12)
     files = [
         rf.export.to_openquake({"x": one}, tmp_path / f"{k}.xml").read_text()
         for k, one in enumerate((curve, other))
@@ -155,9 +155,9 @@ def test_rate_bounds_are_rates_of_the_band_curves():
         band = curve[f"exceedance_probability_{end}_bound"].values
         x = np.geomspace(along[0], along[-1], 200_001)
         within = integrate.trapezoid(np.interp(x, along, band) * density(x), x)
-        whole = found[f"annual_rate_{end}_bound"].item()
-        # beyond the curve that is drawn lies little
-        assert whole == pytest.approx(within, rel=0.01)
+        total = found[f"annual_rate_{end}_bound"].item()
+        # little lies beyond the plotted curve
+        assert total == pytest.approx(within, rel=0.01)
     assert found.annual_rate_lower_bound < found.annual_rate < found.annual_rate_upper_bound
 
 
@@ -177,7 +177,7 @@ def test_rate_of_separated_trials_equals_hazard_at_median():
     parted = rf.fragility(counts, "PGA")
     found = rf.annual_rate(parted, TABLE)
     at = np.exp(np.interp(np.log(parted.median_intensity), np.log(VALUES * G), np.log(RATES)))
-    reached = found.annual_rate.item() + RATES[-1]  # the step goes on beyond the table
+    reached = found.annual_rate.item() + RATES[-1]  # the step continues beyond the table
     assert reached == pytest.approx(at.item(), rel=1e-9)
 
 
@@ -192,15 +192,17 @@ def test_hazard_accepts_probabilities_and_dataarrays(curve):
 
 
 def test_unit_g_means_gravity_for_accelerations(curve):
-    """Elsewhere it is the gram."""
+    """In other arguments g is the gram."""
     counted = rf.fragility({**COUNTS, "intensity": (LEVELS[0], "g")}, "PGA")
     assert counted.median_intensity.item() == curve.median_intensity.item()
     one = rf.annual_rate(curve, TABLE).annual_rate.item()
     array = xr.DataArray(RATES, dims="pga", coords={"pga": ("pga", VALUES, {"units": "g"})})
-    for given in (array, *({**TABLE, "intensity": some} for some in (
+    for hazard_curve in (array, *({**TABLE, "intensity": some} for some in (
         (VALUES, "g"), [f"{value} g" for value in VALUES]
     ))):  # fmt: skip
-        assert rf.annual_rate(curve, given).annual_rate.item() == pytest.approx(one, rel=1e-12)
+        assert rf.annual_rate(curve, hazard_curve).annual_rate.item() == pytest.approx(
+            one, rel=1e-12
+        )
     ends = [
         rf.annual_rate(curve, lambda a: a**-2.5, between=some).annual_rate.item()
         for some in (["0.01 g", "90 g"], ["0.01 g_0", "90 g_0"])
@@ -220,11 +222,11 @@ def test_custom_measure_takes_a_hazard_in_its_unit(unit, size):
     found = rf.fragility(runs, own.assign_attrs(units=unit))
     expected = rf.annual_rate(rf.fragility(runs, "PGA"), TABLE).annual_rate
     values = VALUES * G / size
-    for given in (
+    for hazard_curve in (
         {"intensity": (values, unit), "rate": RATES},
         xr.DataArray(RATES, dims="a", coords={"a": ("a", values, {"units": unit})}),
     ):
-        rate = rf.annual_rate(found, given).annual_rate
+        rate = rf.annual_rate(found, hazard_curve).annual_rate
         np.testing.assert_allclose(rate, expected, rtol=1e-9)
     other = xr.DataArray(values, attrs={"units": "mm"})
     with pytest.raises(UnitsError, match="has the unit 'mm'"):
@@ -264,7 +266,7 @@ def test_rate_beyond_the_hazard_table_warns(curve):
 
 
 @pytest.mark.parametrize(
-    ("given", "error", "words"),
+    ("hazard_curve", "error", "words"),
     [
         ({"intensity": (VALUES, "m/s"), "rate": RATES}, UnitsError, "is in m s"),
         ({"intensity": (VALUES, "g_0"), "rate": RATES[::-1]}, ComponentError, "above zero fall"),
@@ -284,9 +286,9 @@ def test_rate_beyond_the_hazard_table_warns(curve):
         (3.0, ComponentError, "must be a table"),
     ],
 )  # fmt: skip
-def test_invalid_hazard_is_refused(curve, given, error, words):
+def test_invalid_hazard_is_refused(curve, hazard_curve, error, words):
     with pytest.raises(error, match=words):
-        rf.annual_rate(curve, given)
+        rf.annual_rate(curve, hazard_curve)
 
 
 @pytest.mark.parametrize("between", [["2 g_0", "1 g_0"], ["0 g_0", "1 g_0"], ["1 g_0"]])

@@ -1,4 +1,4 @@
-"""What a study is: whatever changes its numbers changes its digest, and nothing is forgotten."""
+"""The digest of a study changes with whatever changes its numbers."""
 
 import inspect
 import shutil
@@ -25,8 +25,8 @@ SYSTEM = rf.System(rf.Block(width="0.5 m", height="2 m", mass="400 kg"))
 OTHER = rf.System(rf.Block(width="0.5 m", height="2 m", mass="400 kg"), gravity="9.8 m/s^2")
 WEAK, STRONG = (rf.GroundMotion.sine_pulse(f"{size} m/s^2", "1 Hz") for size in (3, 9))
 MOTIONS = {"weak": WEAK, "strong": STRONG}
-TURNED = dict(reversed(MOTIONS.items()))
-KEPT = {
+REVERSED = dict(reversed(MOTIONS.items()))
+NEUTRAL = {
     "executor": "runs are the same, whoever makes them",
     "chunk": "a store keeps to the chunks that it was begun with",
     "progress": "a bar shows what is done",
@@ -46,7 +46,7 @@ SWEPT = {"scene": SYSTEM, "motions": MOTIONS, "scale": [1.0, 2.0], "accuracy": "
 SWEEP_CHANGES = {
     **RUN,
     "scene": OTHER,
-    "motions": TURNED,
+    "motions": REVERSED,
     "axes": {"height": ["1 m", "2 m"]},
     "cases": {"width": ["0.5 m"]},
     "points": {"top": ("0 m", "2 m")},
@@ -61,8 +61,8 @@ SWEEP_CHANGES = {
 """By arguments: another value, or what is asked for at first and then."""
 
 SIZES = {"system": SYSTEM, "motions": MOTIONS, "periods": ([2, 4], "s"), "slenderness": [3, 4]}
-OF_SIZES = {
-    "system": OTHER, "motions": TURNED, "periods": ([2, 5], "s"), "slenderness": [3, 5],
+SIZES_CHANGES = {
+    "system": OTHER, "motions": REVERSED, "periods": ([2, 5], "s"), "slenderness": [3, 5],
     "axes": {"gravity": ["9 m/s^2", "10 m/s^2"]},
     "more_axes": ({"gravity": ["9 m/s^2"]}, {"gravity": ["10 m/s^2"]}),
 }  # fmt: skip
@@ -72,7 +72,7 @@ CORRELATED = tuple(
     {"spread": SPREAD, "correlation": {("scale", "gravity"): size}} for size in (0.2, 0.8)
 )
 LINES = {"scale": [0.5, 2.0], "bracket_width": 0.05}
-OF_LINES = {
+LINES_CHANGES = {
     "scale": [0.5, 2.5],
     "bracket_width": 0.02,
     "resolution": 0.1,
@@ -82,7 +82,7 @@ OF_LINES = {
 ANALYSES = {
     "incremental_dynamic_analysis": (
         {"system": SYSTEM, "motions": MOTIONS, **LINES, "intensity": "PGA"},
-        {**RUN, **OF_LINES, "system": OTHER, "motions": TURNED, "limits": ["uplift", 0.5],
+        {**RUN, **LINES_CHANGES, "system": OTHER, "motions": REVERSED, "limits": ["uplift", 0.5],
          "axes": {"height": ["1 m", "2 m"]},
          "more_axes": ({"width": ["0.5 m"]}, {"width": ["0.6 m"]}),
          "points": {"top": ("0 m", "2 m")}, "outputs": ["rotation"],
@@ -95,19 +95,19 @@ ANALYSES = {
         {**RUN, "system": OTHER, "pulse": rf.GroundMotion.cosine_pulse, "bracket_width": 0.02,
          "amplitude": ([2, 4, 9], "m/s^2"), "frequency": ([0.8, 2], "Hz"), "impacts": 1},
     ),
-    "rocking_spectrum": (SIZES, {**RUN, **OF_SIZES}),
-    "overturning_spectrum": ({**SIZES, **LINES}, {**RUN, **OF_SIZES, **OF_LINES}),
+    "rocking_spectrum": (SIZES, {**RUN, **SIZES_CHANGES}),
+    "overturning_spectrum": ({**SIZES, **LINES}, {**RUN, **SIZES_CHANGES, **LINES_CHANGES}),
     "probability_of_overturning": (
         {"system": SYSTEM, "motions": MOTIONS, "spread": {"scale": ("lognormal", 1.5, 0.4)},
          "cases": 24},
-        {**RUN, "system": OTHER, "motions": TURNED, "spread": {"scale": ("lognormal", 1.6, 0.4)},
+        {**RUN, "system": OTHER, "motions": REVERSED, "spread": {"scale": ("lognormal", 1.6, 0.4)},
          "correlation": CORRELATED, "cases": 25, "sampling": "random",
          "seed": 1, "confidence": 0.9},
     ),
     "subset_simulation": (
         {"system": SYSTEM, "motions": MOTIONS, "spread": {"scale": ("lognormal", 0.9, 0.2)},
          "cases": 60, "levels": 2},
-        {**RUN, "system": OTHER, "motions": TURNED, "spread": {"scale": ("lognormal", 0.8, 0.2)},
+        {**RUN, "system": OTHER, "motions": REVERSED, "spread": {"scale": ("lognormal", 0.8, 0.2)},
          "correlation": CORRELATED, "limit": 0.5, "cases": 61, "share": 0.2, "levels": 3,
          "seed": 1, "confidence": 0.9, "points": {"top": ("0 m", "2 m")}},
     ),
@@ -119,8 +119,8 @@ ANALYSES = {
 }  # fmt: skip
 
 
-SEEN = ("overturning_map", "probability_of_overturning", "earthquake_sequences")
-"""Analyses of whose arguments of runs each is changed in every round of tests."""
+FULLY_TESTED = ("overturning_map", "probability_of_overturning", "earthquake_sequences")
+"""Analyses whose arguments of runs are all changed in the short tests."""
 
 
 def arguments_of(name):
@@ -128,14 +128,14 @@ def arguments_of(name):
 
 
 def test_every_study_argument_is_covered_by_these_tests():
-    # what others know are the same numbers, tests/unit/studies/test_known_cases.py
-    assert set(SWEEP_CHANGES) | set(KEPT) | {"known"} == arguments_of("sweep")
+    # tests/unit/studies/test_known_cases.py covers arguments that keep the numbers
+    assert set(SWEEP_CHANGES) | set(NEUTRAL) | {"known"} == arguments_of("sweep")
     for name, (_, changes) in ANALYSES.items():
-        assert set(changes) | set(KEPT) == arguments_of(name), name
+        assert set(changes) | set(NEUTRAL) == arguments_of(name), name
 
 
-def two(base, name, change):
-    """Return what is asked for before and after an argument has been changed."""
+def before_and_after(base, name, change):
+    """Return the arguments of an analysis before and after a change."""
     before, after = change if isinstance(change, tuple) and len(change) == 2 and all(
         isinstance(one, dict) for one in change
     ) else ({}, {name: change})  # fmt: skip
@@ -147,7 +147,7 @@ def two(base, name, change):
 
 @pytest.mark.parametrize("name", SWEEP_CHANGES)
 def test_changed_sweep_argument_is_refused_by_its_store(name, tmp_path):
-    before, after = two(SWEPT, name, SWEEP_CHANGES[name])
+    before, after = before_and_after(SWEPT, name, SWEEP_CHANGES[name])
     rf.sweep(**before, store=tmp_path / "study")
     with pytest.raises(StudyError, match=r"found another study, which differs in \w+.* known='"):
         rf.sweep(**after, store=tmp_path / "study")
@@ -163,15 +163,15 @@ def test_execution_options_do_not_change_the_study(tmp_path):
 
 
 @pytest.fixture(scope="module")
-def begun(tmp_path_factory):
-    """Return a function that makes the store of an analysis, each but once."""
+def started_store(tmp_path_factory):
+    """Return a function that creates the store of an analysis, each only once."""
     made = {}
 
-    def store(name, asked, into):
-        key = name, repr(sorted(asked.items(), key=lambda one: one[0]))
+    def store(name, arguments, into):
+        key = name, repr(sorted(arguments.items(), key=lambda one: one[0]))
         if key not in made:
             made[key] = tmp_path_factory.mktemp("store") / "study"
-            getattr(rf, name)(**asked, store=made[key])
+            getattr(rf, name)(**arguments, store=made[key])
         shutil.copytree(made[key], into)
 
     return store
@@ -180,36 +180,38 @@ def begun(tmp_path_factory):
 @pytest.mark.parametrize(
     ("analysis", "name"),
     [
-        # what all analyses hand on to runs is read in one place
-        pytest.param(one, name, marks=[pytest.mark.long] * (name in RUN and one not in SEEN))
+        # arguments that all analyses pass to runs are read in one place
+        pytest.param(
+            one, name, marks=[pytest.mark.long] * (name in RUN and one not in FULLY_TESTED)
+        )
         for one, (_, changes) in ANALYSES.items()
         for name in changes
     ],
 )
-def test_store_never_returns_results_of_other_arguments(analysis, name, begun, tmp_path):
+def test_store_never_returns_results_of_other_arguments(analysis, name, started_store, tmp_path):
     base, changes = ANALYSES[analysis]
-    before, after = two({"accuracy": "fast", **base}, name, changes[name])
-    begun(analysis, before, tmp_path / "study")
+    before, after = before_and_after({"accuracy": "fast", **base}, name, changes[name])
+    started_store(analysis, before, tmp_path / "study")
     try:
-        kept = getattr(rf, analysis)(**after, store=tmp_path / "study")
+        stored = getattr(rf, analysis)(**after, store=tmp_path / "study")
     except StudyError as problem:
         assert "found another study, which differs in" in str(problem)  # noqa: PT017
     else:
-        assert_identical(kept, getattr(rf, analysis)(**after))
+        assert_identical(stored, getattr(rf, analysis)(**after))
 
 
-# what is told ----------------------------------------------------------------------------------
+# descriptions ----------------------------------------------------------------------------------
 
 
 @dataclass(frozen=True)
-class Asked:
+class Arguments:
     size: float
     words: tuple[str, ...]
     further: object = None
 
 
 def test_description_covers_all_fields_and_refuses_unknown_objects():
-    one = Asked(1.0, ("a", "b"))
+    one = Arguments(1.0, ("a", "b"))
     others = [
         replace(one, size=np.nextafter(1.0, 2.0)), replace(one, words=("b", "a")),
         *(replace(one, further=each) for each in (
@@ -221,8 +223,8 @@ def test_description_covers_all_fields_and_refuses_unknown_objects():
     ]  # fmt: skip
     digests = [digest_of(description_of(each)) for each in (one, *others)]
     assert len(set(digests)) == len(digests)
-    assert digest_of(description_of(Asked(1.0, ("a", "b")))) == digests[0]
-    for unknown in (object(), {1, 2}, Asked(1.0, (), object()), {"a": object()}):
+    assert digest_of(description_of(Arguments(1.0, ("a", "b")))) == digests[0]
+    for unknown in (object(), {1, 2}, Arguments(1.0, (), object()), {"a": object()}):
         with pytest.raises(StudyError, match="nothing tells whether it is the same"):
             description_of(unknown)
 
@@ -246,12 +248,11 @@ def test_description_of_a_study_covers_nested_fields():
     assert {"Study", "SystemScene", "Assembly", "Parts", "Options", "Grid", "RunRequest",
             "Accuracy", "Histories"} <= set(seen)  # fmt: skip
     assert not [name for name in seen if name.startswith("_")]
-    # a job has nothing that its study does not tell: two are of the grid, and in lanes, for which
-    # it waits as long as they save, cases have the same numbers to the last bit; what restrainers
-    # are called follows from the scenes
+    # further fields of a job do not change numbers: two follow from the grid, names of restrainers
+    # from the scenes; with lanes or without, cases are equal bit for bit
     derived = {"axes", "motion_of_case", "compile_timeout", "restrainers"}
-    told_of = {one.name for one in fields(Study)} | derived
-    assert {one.name for one in fields(SweepJob)} <= told_of
+    described = {one.name for one in fields(Study)} | derived
+    assert {one.name for one in fields(SweepJob)} <= described
 
 
 def test_digest_depends_on_motion_samples():
@@ -279,13 +280,13 @@ def test_digest_depends_on_closure_of_a_function():
     assert digest(scene_with(400)) != digest(scene_with(401))
 
 
-GIVEN = {"frequency_ratio": 15, "damping_ratio": 0.05, "strength": 0.6, "hardening": 0.1}
+ARGUMENTS = {"frequency_ratio": 15, "damping_ratio": 0.05, "strength": 0.6, "hardening": 0.1}
 
 
 def test_digest_depends_on_code_of_a_user_defined_base(tmp_path):
     def digest(module):
         _source_of_class.cache_clear()
-        pads = module.YieldingPads(**GIVEN)
+        pads = module.YieldingPads(**ARGUMENTS)
         return digest_of(description_of(pads))
 
     with example() as module:

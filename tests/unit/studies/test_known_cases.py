@@ -1,4 +1,4 @@
-"""Studies that are extended by motions and values, or combined: what others have run is not run."""
+"""Extended and combined studies reuse stored cases instead of running them again."""
 
 import numpy as np
 import pytest
@@ -32,8 +32,8 @@ HEIGHTS = ["2 m", "0.2 m", "1 m"]  # the second cannot rock
 
 
 @pytest.fixture
-def ran(monkeypatch):
-    """Count the cases that are run."""
+def cases_run(monkeypatch):
+    """Return a list that collects the cases that are run."""
     count, plain = [], Study.job
 
     def job(self, cases):
@@ -54,44 +54,44 @@ def swept(motions=tuple(MOTIONS), scales=SCALES, heights=HEIGHTS, **run):
 @pytest.mark.parametrize(
     "chunk", [7, *(pytest.param(size, marks=pytest.mark.long) for size in (1, 4, 1000))]
 )
-def test_a_study_is_extended_by_motions_and_values(tmp_path, ran, chunk):
-    whole = swept()
+def test_a_study_is_extended_by_motions_and_values(tmp_path, cases_run, chunk):
+    complete = swept()
     swept(("10", "weak"), [0.5, 1.0], HEIGHTS[::-1], store=tmp_path / "first")
-    ran.clear()
+    cases_run.clear()
     more = swept(store=tmp_path / "more", known=tmp_path / "first", chunk=chunk)
-    assert_identical(more, whole)
-    assert len(ran) == len(set(ran)) == 60 - 2 * 2 * 3
-    ran.clear()
-    assert_identical(swept(store=tmp_path / "more", known=str(tmp_path / "first")), whole)
-    assert_identical(swept(store=tmp_path / "more"), whole)  # it needs the other no longer
-    assert not ran
+    assert_identical(more, complete)
+    assert len(cases_run) == len(set(cases_run)) == 60 - 2 * 2 * 3
+    cases_run.clear()
+    assert_identical(swept(store=tmp_path / "more", known=str(tmp_path / "first")), complete)
+    assert_identical(swept(store=tmp_path / "more"), complete)  # independent of the first study
+    assert not cases_run
 
 
-def test_studies_are_combined(tmp_path, ran):
-    whole = swept()
+def test_studies_are_combined(tmp_path, cases_run):
+    complete = swept()
     swept(("a", "9"), store=tmp_path / "some")
     swept(("weak", "9", "10"), store=tmp_path / "others")
-    ran.clear()
+    cases_run.clear()
     parts = [tmp_path / "others", tmp_path / "some"]
-    assert_identical(swept(store=tmp_path / "all", known=parts), whole)
-    assert not ran
-    few = swept(("9",), [2.0])  # too few to be run side by side, as those were that are known
+    assert_identical(swept(store=tmp_path / "all", known=parts), complete)
+    assert not cases_run
+    few = swept(("9",), [2.0])  # too few for lanes, in which the stored ones were run
     assert_identical(
         swept(("9",), [2.0], store=tmp_path / "one", known=parts), few, apart=["driver"]
     )
 
 
-def test_cases_missing_from_the_known_study_are_run(tmp_path, ran):
-    kept = {"outputs": ["rotation"], "output_step": "0.02 s", "duration": "3 s",
+def test_cases_missing_from_the_known_study_are_run(tmp_path, cases_run):
+    settings = {"outputs": ["rotation"], "output_step": "0.02 s", "duration": "3 s",
             "points": {"top": ("0 m", "2 m")}, "accuracy": "standard"}  # fmt: skip
     heights = ["2 m", "3 m"]
-    whole = swept(heights=heights, **kept)
-    swept(("weak", "9"), heights=heights, store=tmp_path / "first", **kept)
+    complete = swept(heights=heights, **settings)
+    swept(("weak", "9"), heights=heights, store=tmp_path / "first", **settings)
     (tmp_path / "first" / "chunk-000001.arrays").unlink()
-    ran.clear()
-    more = swept(heights=heights, store=tmp_path / "more", known=tmp_path / "first", **kept)
-    assert_identical(more, whole)
-    assert len(ran) == 20 + 4
+    cases_run.clear()
+    more = swept(heights=heights, store=tmp_path / "more", known=tmp_path / "first", **settings)
+    assert_identical(more, complete)
+    assert len(cases_run) == 20 + 4
 
 
 def test_incompatible_known_study_is_refused(tmp_path):

@@ -1,4 +1,4 @@
-"""Studies that are larger than the memory: read as they are used, told of before they begin."""
+"""Studies larger than memory are read lazily, and are announced before they begin."""
 
 import tracemalloc
 
@@ -36,7 +36,7 @@ TABLE = pd.DataFrame({"motion": ["a", "10", "weak", "9", "a"], "scale": [1.0, 1.
 
 
 def on_a_grid(**run):
-    # the flattest cannot rock, and has no result
+    # the lowest block cannot rock, and has no result
     return rf.sweep(
         SYSTEM, MOTIONS, height=["2 m", "0.2 m", "1 m"], scale=[1.0, 0.5, 1.5, 0.7], chunk=7, **run
     )
@@ -63,7 +63,7 @@ STUDIES = [on_a_grid, with_histories, of_a_table, screened]
 
 
 @pytest.fixture(params=[True, False], ids=["with dask", "without"])
-def dask_is_there(request, monkeypatch):
+def has_dask(request, monkeypatch):
     if request.param:
         pytest.importorskip("dask", reason="dask is not installed")
     else:
@@ -71,10 +71,10 @@ def dask_is_there(request, monkeypatch):
     return request.param
 
 
-def agrees(lazy, whole):
-    """Whether both have the same, but that one has floats where the other need not."""
-    assert set(lazy.variables) == set(whole.variables)
-    for name, expected in whole.variables.items():
+def assert_equal_lazily(lazy, in_memory):
+    """Compare both, except that missing values make floats of other numbers."""
+    assert set(lazy.variables) == set(in_memory.variables)
+    for name, expected in in_memory.variables.items():
         found = lazy.variables[name]
         assert found.dims == expected.dims, name
         assert found.attrs["long_name"] == expected.attrs["long_name"]
@@ -88,39 +88,41 @@ def agrees(lazy, whole):
 
 @pytest.mark.filterwarnings("ignore::rockframe.errors.SolverWarning")
 @pytest.mark.parametrize("run", STUDIES)
-def test_lazily_opened_study_equals_the_stored_one(run, tmp_path, dask_is_there, monkeypatch):
+def test_lazily_opened_study_equals_the_stored_one(run, tmp_path, has_dask, monkeypatch):
     monkeypatch.setattr(lazy_dataset, "_BLOCK_SIZE", 1)
     counted, counts = [], words._counts
     monkeypatch.setattr(words, "_counts", lambda *a: counted.append(a[0].sizes) or counts(*a))
-    whole = run(accuracy="fast", store=tmp_path / "study")
+    in_memory = run(accuracy="fast", store=tmp_path / "study")
     lazy = rf.open_study(tmp_path / "study", lazy=True)
-    assert (lazy.chunks != {}) == dask_is_there
-    agrees(lazy, whole)
-    said = {name: one for name, one in whole.attrs.items() if name not in ("verdict", "driver")}
-    assert lazy.attrs == said
+    assert (lazy.chunks != {}) == has_dask
+    assert_equal_lazily(lazy, in_memory)
+    attrs = {
+        name: one for name, one in in_memory.attrs.items() if name not in ("verdict", "driver")
+    }
+    assert lazy.attrs == attrs
     counted.clear()
-    assert lazy.rockframe.verdict == whole.rockframe.verdict == whole.verdict
-    assert len(counted) > 1 or run is screened  # in parts of chunks
+    assert lazy.rockframe.verdict == in_memory.rockframe.verdict == in_memory.verdict
+    assert len(counted) > 1 or run is screened  # read in parts
     rng = np.random.default_rng(1)
-    for _ in range(20):  # whatever is picked, along one dimension or along all
+    for _ in range(20):  # any selection, along one dimension or along all
         key = {
             dim: [rng.integers(-size, size).item(), rng.integers(-size, size, 3),
                   slice(*sorted(rng.integers(0, size + 1, 2).tolist())), slice(None, None, -1)]
             [rng.integers(4)]
-            for dim, size in whole.sizes.items()
+            for dim, size in in_memory.sizes.items()
             if rng.random() < 0.7
         }  # fmt: skip
-        agrees(lazy.isel(key), whole.isel(key))
+        assert_equal_lazily(lazy.isel(key), in_memory.isel(key))
     last = dict.fromkeys(lazy.status.dims, -1)
-    agrees(lazy.isel(last), whole.isel(last))
+    assert_equal_lazily(lazy.isel(last), in_memory.isel(last))
     first = {str(lazy.status.dims[0]): 0}
-    assert lazy.isel(first).rockframe.verdict == whole.isel(first).rockframe.verdict
-    assert len(rf.table(lazy)) == len(rf.table(whole))
+    assert lazy.isel(first).rockframe.verdict == in_memory.isel(first).rockframe.verdict
+    assert len(rf.table(lazy)) == len(rf.table(in_memory))
 
 
 @pytest.mark.filterwarnings("ignore::rockframe.errors.SolverWarning")
-def test_only_used_chunks_are_read(tmp_path, monkeypatch, dask_is_there):
-    whole = on_a_grid(store=tmp_path / "study")
+def test_only_used_chunks_are_read(tmp_path, monkeypatch, has_dask):
+    in_memory = on_a_grid(store=tmp_path / "study")
     lazy_dataset._rows.cache_clear()
     read, plain = [], Store.get
     monkeypatch.setattr(Store, "get", lambda self, one: read.append(one.number) or plain(self, one))
@@ -128,22 +130,24 @@ def test_only_used_chunks_are_read(tmp_path, monkeypatch, dask_is_there):
     part = lazy.isel(motion=1, scale=0)
     assert lazy.sizes["height"] == 3
     assert not read
-    np.testing.assert_array_equal(part.peak_rotation, whole.isel(motion=1, scale=0).peak_rotation)
+    np.testing.assert_array_equal(
+        part.peak_rotation, in_memory.isel(motion=1, scale=0).peak_rotation
+    )
     # motions change slowest, so that neighbouring cases are those of a motion
     chunks = len(list((tmp_path / "study").glob("chunk-*")))
-    assert 1 <= len(set(read)) <= (chunks if dask_is_there else 2)
+    assert 1 <= len(set(read)) <= (chunks if has_dask else 2)
     assert len(read) == len(set(read))
 
 
 @pytest.mark.filterwarnings("ignore::rockframe.errors.SolverWarning")
-def test_missing_chunks_appear_as_gaps(tmp_path, dask_is_there):
+def test_missing_chunks_appear_as_gaps(tmp_path, has_dask):
     on_a_grid(store=tmp_path / "study")
     (tmp_path / "study" / "chunk-000002.arrays").unlink()
     lazy_dataset._rows.cache_clear()
-    whole, lazy = (rf.open_study(tmp_path / "study", lazy=one) for one in (False, True))
-    agrees(lazy, whole)
+    in_memory, lazy = (rf.open_study(tmp_path / "study", lazy=one) for one in (False, True))
+    assert_equal_lazily(lazy, in_memory)
     assert int((lazy.status == RunStatus.NOT_RUN).sum()) == 7
-    assert lazy.rockframe.verdict == whole.verdict
+    assert lazy.rockframe.verdict == in_memory.verdict
     on_a_grid(store=tmp_path / "study")
     assert (
         lazy_dataset.lazy_dataset(Store.open(tmp_path / "study")).status.max() < RunStatus.NOT_RUN
@@ -174,8 +178,8 @@ def test_with_dask_statistics_stream(tmp_path, monkeypatch):
     dask = pytest.importorskip("dask", reason="dask is not installed")
     scales = np.linspace(0.05, 0.1, 200)
     few = {"scale": scales, "duration": "3 s", "output_step": "1 ms", "outputs": ["rotation"]}
-    whole = rf.sweep(SYSTEM, MOTIONS, **few, chunk=10, store=tmp_path / "study")
-    size = whole.rotation.nbytes
+    in_memory = rf.sweep(SYSTEM, MOTIONS, **few, chunk=10, store=tmp_path / "study")
+    size = in_memory.rotation.nbytes
     assert size > 1e7
     monkeypatch.setattr(lazy_dataset, "_BLOCK_SIZE", 10)
     lazy = rf.open_study(tmp_path / "study", lazy=True)
@@ -188,14 +192,14 @@ def test_with_dask_statistics_stream(tmp_path, monkeypatch):
         taken = tracemalloc.get_traced_memory()[1]
     finally:
         tracemalloc.stop()
-    assert found == np.abs(whole.rotation).max().item()
+    assert found == np.abs(in_memory.rotation).max().item()
     assert taken < 0.5 * size
     with dask.config.set(scheduler="synchronous"):
-        # of texts that are read as they are used xarray would have to know the longest
+        # xarray would need the longest of all lazily read texts
         numbers = lazy.drop_vars(["rotation", "message"])
         numbers.to_netcdf(tmp_path / "whole.nc")
     with xr.open_dataset(tmp_path / "whole.nc") as read:
-        agrees(read, numbers)
+        assert_equal_lazily(read, numbers)
 
 
 @pytest.mark.filterwarnings("ignore::rockframe.errors.SolverWarning")
@@ -212,36 +216,36 @@ def test_lazy_blocks_follow_the_execution_order(tmp_path):
 
 def test_study_larger_than_memory_is_read_from_its_store(tmp_path, monkeypatch):
     scales = np.linspace(0.1, 1, 100)
-    whole = rf.sweep(SYSTEM, MOTIONS["weak"], scale=scales, free_vibration="5 s")
+    in_memory = rf.sweep(SYSTEM, MOTIONS["weak"], scale=scales, free_vibration="5 s")
     monkeypatch.setattr(memory, "available_memory", lambda: 2e4)
-    told = r"100 cases need about 0.058 MB of memory .* 0.02 MB are available; "
-    with pytest.raises(StudyError, match=f"{told}run fewer cases or give a store, from which"):
+    message = r"100 cases need about 0.058 MB of memory .* 0.02 MB are available; "
+    with pytest.raises(StudyError, match=f"{message}run fewer cases or give a store, from which"):
         rf.sweep(SYSTEM, MOTIONS["weak"], scale=scales, free_vibration="5 s")
-    with pytest.warns(SolverWarning, match=f"{told}they are read from the store"):
+    with pytest.warns(SolverWarning, match=f"{message}they are read from the store"):
         runs = rf.sweep(
             SYSTEM, MOTIONS["weak"], scale=scales, free_vibration="5 s", store=tmp_path / "study"
         )
-    agrees(runs, whole)
+    assert_equal_lazily(runs, in_memory)
     assert "verdict" not in runs.attrs
-    assert runs.rockframe.verdict == whole.verdict
+    assert runs.rockframe.verdict == in_memory.verdict
     monkeypatch.undo()
     again = rf.sweep(
         SYSTEM, MOTIONS["weak"], scale=scales, free_vibration="5 s", store=tmp_path / "study"
     )
-    assert as_bytes(again) == as_bytes(whole)  # the same study, whatever memory there is
+    assert as_bytes(again) == as_bytes(in_memory)  # the same study, independent of available memory
 
 
 def test_an_interrupted_study_that_does_not_fit_is_not_read(tmp_path, monkeypatch):
     monkeypatch.setattr(memory, "available_memory", lambda: 2e4)
     monkeypatch.setattr(Store, "get", lambda *_: pytest.fail("it has been read"))
     stopped = Interrupting(2)
-    with pytest.warns(SolverWarning) as said:
+    with pytest.warns(SolverWarning) as caught:
         runs = rf.sweep(
             SYSTEM, MOTIONS["weak"], scale=np.linspace(0.1, 1, 100), free_vibration="5 s",
             store=tmp_path / "study", chunk=30, executor=stopped,
         )  # fmt: skip
     assert any("interrupted; 60 of 100 cases have been run, and are kept" in str(one.message)
-               for one in said)  # fmt: skip
+               for one in caught)  # fmt: skip
     assert runs.status.size == 100
 
 

@@ -10,7 +10,7 @@ from rockframe.studies.limit_states import demands, exceeds, limit_states
 
 BLOCK = rf.Block(width="0.5 m", height="2 m", mass="400 kg")
 SUITE = [rf.GroundMotion.stochastic(6.5, "10 km", seed=k) for k in range(6)]
-HOW = {"accuracy": "fast", "progress": False}
+OPTIONS = {"accuracy": "fast", "progress": False}
 ROOF = ("peak_point_horizontal_acceleration", "6 m/s^2", "top")
 
 
@@ -18,7 +18,7 @@ ROOF = ("peak_point_horizontal_acceleration", "6 m/s^2", "top")
 def runs():
     return rf.sweep(
         rf.System(BLOCK), SUITE, scale=[0.5, 1.0, 2.0, 3.0, 4.0],
-        points={"foot": ("0 m", "0.1 m"), "top": ("0 m", "2 m")}, **HOW,
+        points={"foot": ("0 m", "0.1 m"), "top": ("0 m", "2 m")}, **OPTIONS,
     )  # fmt: skip
 
 
@@ -46,17 +46,17 @@ def test_limit_states_retain_their_order(runs):
 
 @pytest.mark.long
 def test_dynamic_analysis_brackets_a_slip_limit_state():
-    """A slip of so many metres is exceeded between two runs that tell it."""
+    """A limit of slip is first exceeded between two runs."""
     slides = rf.System(BLOCK, rf.RigidGround(friction=0.1))
     found = rf.incremental_dynamic_analysis(
-        slides, SUITE[:2], scale=[1.0, 2.0, 4.0], limits=[("peak_slip", "1 cm")], **HOW
+        slides, SUITE[:2], scale=[1.0, 2.0, 4.0], limits=[("peak_slip", "1 cm")], **OPTIONS
     )
     capacity = found.capacity_scale.isel(limit_state=0)
     assert found.limit_state.values[0] == "peak slip 0.01 m"
     assert np.isfinite(capacity).any()
     for name, least in zip(found.motion.values, capacity.values, strict=True):
         if np.isfinite(least):
-            around = rf.sweep(slides, SUITE[:2], scale=[least * (1 - 2e-3), least], **HOW)
+            around = rf.sweep(slides, SUITE[:2], scale=[least * (1 - 2e-3), least], **OPTIONS)
             slips = around.peak_slip.sel(motion=name).values
             assert slips[0] < 0.01 <= slips[1]
     again = rf.fragility(found, trials="capacities")
@@ -92,7 +92,7 @@ def test_cases_without_a_result_are_omitted(runs):
     assert isinstance(found, xr.Dataset)
 
 
-# from the runs to the report -------------------------------------------------------------------
+# runs, fragilities and reports -------------------------------------------------------------------
 
 ON_SOIL = rf.System(
     rf.Block(width="1 m", height="4 m", mass="10 t"),
@@ -123,7 +123,7 @@ def exceeding(runs, limit):
 
 @pytest.mark.filterwarnings("ignore::rockframe.errors.ModelWarning")
 def test_settlement_drift_and_acceleration_limits_reach_the_report(tmp_path):
-    runs = rf.sweep(ON_SOIL, SUITE, scale=[1.0, 2.0, 4.0, 6.0, 8.0], points=POINTS, **HOW)
+    runs = rf.sweep(ON_SOIL, SUITE, scale=[1.0, 2.0, 4.0, 6.0, 8.0], points=POINTS, **OPTIONS)
     found = rf.fragility(runs, "PGA", limits=LIMITS.values())
     assert found.limit_state.values.tolist() == [*LIMITS, "overturning"]
     for name, limit in LIMITS.items():
@@ -150,7 +150,7 @@ def test_a_dynamic_analysis_narrows_limit_states_at_points():
     drift = ("peak_point_horizontal_displacement", "4 cm", "top")
     found = rf.incremental_dynamic_analysis(
         system, SUITE[:2], scale=[1.0, 2.0, 4.0], limits=[ROOF, drift], points=top,
-        outputs=["rotation"], output_step="0.05 s", **HOW,
+        outputs=["rotation"], output_step="0.05 s", **OPTIONS,
     )  # fmt: skip
     assert found.peak_point_horizontal_acceleration.dims == ("scale", "motion", "point")
     assert found.rotation.dims == ("scale", "motion", "time")
@@ -161,7 +161,7 @@ def test_a_dynamic_analysis_narrows_limit_states_at_points():
             if not np.isfinite(capacity):
                 continue
             around = rf.sweep(
-                system, SUITE[:2], scale=[capacity * (1 - 2e-3), capacity], points=top, **HOW
+                system, SUITE[:2], scale=[capacity * (1 - 2e-3), capacity], points=top, **OPTIONS
             )
             peaks = around[name].sel(motion=motion, point="top").values
             assert peaks[0] < least <= peaks[1]
@@ -172,12 +172,12 @@ def test_a_dynamic_analysis_narrows_limit_states_at_points():
 
 
 def test_block_returning_from_beyond_overturning_exceeds_reached_limits():
-    """It has not overturned; but peaks that are told up to the angle say nothing of the rest."""
+    """The run has not overturned, but its peaks are known only up to the overturning angle."""
     walled = rf.System(BLOCK, rf.RearWall(side="left", restitution=-0.3))
     pulse = rf.GroundMotion.sine_pulse("-6 m/s^2", "1 Hz")
     found = rf.sweep(
         walled, pulse, scale=[1.0], overturning="continue", free_vibration="8 s",
-        points={"top": ("0 m", "2 m")}, **HOW,
+        points={"top": ("0 m", "2 m")}, **OPTIONS,
     )  # fmt: skip
     assert (found.overturned == 1).all()
     assert found.verdict == "Of 1 case of the sweep 0 overturned and 1 did not."
@@ -197,22 +197,22 @@ def test_block_returning_from_beyond_overturning_exceeds_reached_limits():
 
 
 def test_converted_responses_are_read_in_their_unit():
-    """Such as for a figure: limit states, levels and measures go by the unit that they have."""
+    """As for a figure: limit states, levels and measures are read in the unit that they have."""
     motions = {f"seed {k}": rf.GroundMotion.stochastic(6.8, "8 km", seed=k) for k in range(4)}
     block = rf.Block(width="0.6 m", height="2 m", mass="400 kg")
-    runs = rf.sweep(rf.System(block), motions, scale=[2, 4, 6], **HOW)
+    runs = rf.sweep(rf.System(block), motions, scale=[2, 4, 6], **OPTIONS)
     turned = runs.assign(
         peak_rotation=np.rad2deg(runs.peak_rotation).assign_attrs(units="deg"),
         peak_relative_rotation=(100 * runs.peak_relative_rotation).assign_attrs(units="percent"),
     )
     for ask in (
-        lambda given: rf.fragility(given, "PGA", limits=[("peak_rotation", "5 deg"), 0.3]),
-        lambda given: rf.fractile_curves(given, "PGA", "peak_rotation", levels=([2, 4], "deg")),
-        lambda given: rf.fractile_curves(given, "PGA"),
-        lambda given: rf.cloud_analysis(
-            given.isel(scale=1), "PGA", response="peak_rotation", limits=["5 deg"]
+        lambda dataset: rf.fragility(dataset, "PGA", limits=[("peak_rotation", "5 deg"), 0.3]),
+        lambda dataset: rf.fractile_curves(dataset, "PGA", "peak_rotation", levels=([2, 4], "deg")),
+        lambda dataset: rf.fractile_curves(dataset, "PGA"),
+        lambda dataset: rf.cloud_analysis(
+            dataset.isel(scale=1), "PGA", response="peak_rotation", limits=["5 deg"]
         ),
-        lambda given: rf.compare_intensities(given.isel(scale=1), ["PGA", "PGV"]),
+        lambda dataset: rf.compare_intensities(dataset.isel(scale=1), ["PGA", "PGV"]),
     ):
         xr.testing.assert_allclose(ask(turned), ask(runs), rtol=1e-12)
     wrong = runs.assign(peak_rotation=runs.peak_rotation.assign_attrs(units="m"))
@@ -222,15 +222,15 @@ def test_converted_responses_are_read_in_their_unit():
 
 @pytest.mark.long
 def test_converted_scales_give_the_same_capacities():
-    """Those of a dynamic analysis are multiples of the motion, whatever its scales are in."""
+    """Scales of a dynamic analysis are multiples of the motion, whatever their unit."""
     motions = {f"seed {k}": rf.GroundMotion.stochastic(6.8, "8 km", seed=k) for k in range(4)}
     block = rf.Block(width="0.6 m", height="2 m", mass="400 kg")
-    runs = rf.incremental_dynamic_analysis(rf.System(block), motions, scale=[2, 4, 6, 8], **HOW)
+    runs = rf.incremental_dynamic_analysis(rf.System(block), motions, scale=[2, 4, 6, 8], **OPTIONS)
     turned = runs.assign_coords(scale=("scale", 100 * runs.scale.values, {"units": "percent"}))
     for ask in (
-        lambda given: rf.fragility(given, "PGA", trials="capacities").median_intensity,
-        lambda given: rf.fractile_curves(given, "PGA").response_fractile,
-        lambda given: rf.fractile_curves(given).response_fractile,
+        lambda dataset: rf.fragility(dataset, "PGA", trials="capacities").median_intensity,
+        lambda dataset: rf.fractile_curves(dataset, "PGA").response_fractile,
+        lambda dataset: rf.fractile_curves(dataset).response_fractile,
     ):
         xr.testing.assert_allclose(ask(turned), ask(runs), rtol=1e-12)
 

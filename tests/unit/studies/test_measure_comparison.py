@@ -1,4 +1,4 @@
-"""Intensity measures side by side, against regressions by other means and samples that are made."""
+"""Comparison of intensity measures against independent regressions and artificial samples."""
 
 import math
 
@@ -34,7 +34,7 @@ def runs():
         status=(dims, status.reshape(shape), found.status.attrs),
     ).assign_coords(
         good=("motion", np.exp(true), {"units": "m"}),
-        # the response does not depend on magnitude beside the measure; given this one it does
+        # the response depends on magnitude only through the measure; for the other measure it does
         poor=("motion", np.exp(true + 0.6 * (magnitude - 6.5)), {"units": "m"}),
         magnitude=("motion", magnitude, {"units": "1"}),
     )
@@ -56,8 +56,8 @@ def test_measures_are_compared_as_regressions_are(runs):
         # the t-test of the slope of the residuals, from its definition
         m = runs.magnitude.values[~fell] - runs.magnitude.values[~fell].mean()
         slope = (m @ residual) / (m @ m)
-        rest = residual - slope * m
-        error = math.sqrt((rest @ rest) / (len(m) - 2) / (m @ m))
+        remainder = residual - slope * m
+        error = math.sqrt((remainder @ remainder) / (len(m) - 2) / (m @ m))
         assert one.sufficiency_slope.item() == pytest.approx(slope, rel=1e-9)
         chance = 2.0 * stats.t.sf(abs(slope / error), len(m) - 2)
         assert one.sufficiency_p_value.item() == pytest.approx(chance, rel=1e-9)
@@ -123,7 +123,7 @@ def test_spectral_measures_are_labelled_with_their_periods(runs):
         "pseudo spectral acceleration at 0.5 s", "pseudo spectral acceleration at 1 s",
         "average spectral acceleration, 0.5 to 1 s", "peak ground acceleration",
     ]  # fmt: skip
-    # all motions are one pulse, scaled: all measures are one another's multiples
+    # all motions are one scaled pulse, so that all measures are proportional
     np.testing.assert_allclose(
         found.residual_dispersion, found.residual_dispersion[0].item(), rtol=1e-6
     )

@@ -1,4 +1,4 @@
-"""What a study needs of memory: told before it begins, refused where there is not so much."""
+"""Memory of a study: estimated before it begins, and refused if there is not enough."""
 
 import tracemalloc
 
@@ -48,7 +48,7 @@ def test_study_using_most_of_memory_warns(monkeypatch):
 
 def test_estimated_memory_matches_measured_memory(monkeypatch):
     motions = [PULSE, PULSE.scaled(1.1)]
-    sizes = []  # of scalars, of histories, of both, and what there is
+    sizes = []  # of scalars, of histories, of both, and available
     monkeypatch.setattr(memory, "available_memory", lambda: 1e12)
     shown = memory._size_words
     monkeypatch.setattr(memory, "_size_words", lambda size: sizes.append(size) or shown(size))
@@ -56,7 +56,7 @@ def test_estimated_memory_matches_measured_memory(monkeypatch):
         "scale": np.linspace(0.1, 0.2, 40), "outputs": ["rotation", "base_shear"],
         "output_step": "1 ms", "duration": "5 s", "progress": False,
     }  # fmt: skip
-    rf.sweep(SYSTEM, motions, **{**arguments, "scale": [0.1, 0.2]})  # what is made once
+    rf.sweep(SYSTEM, motions, **{**arguments, "scale": [0.1, 0.2]})  # warm-up
     sizes.clear()
     tracemalloc.start()
     try:
@@ -72,7 +72,7 @@ def test_available_memory_is_the_smallest_limit(monkeypatch, tmp_path):
     machine, most, now, parts = (tmp_path / name for name in ("meminfo", "max", "current", "stat"))
     monkeypatch.setattr(memory, "_MEMINFO", machine)
     monkeypatch.setattr(memory, "_CGROUP_FILES", ((most, now, parts),))
-    assert memory.available_memory() > 1e7  # what the machine has, or infinite
+    assert memory.available_memory() > 1e7  # of the machine, or infinite
     machine.write_text("MemTotal: 9 kB\nMemAvailable:   4000 kB\n")
     assert memory.available_memory() == 4096e3
     most.write_text("max\n")

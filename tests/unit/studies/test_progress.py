@@ -1,4 +1,4 @@
-"""One bar over all runs of an analysis, whose total grows with its rounds."""
+"""One progress bar over all runs of an analysis, whose total grows with its rounds."""
 
 import sys
 import types
@@ -19,7 +19,7 @@ FAST = {"free_vibration": "4 s", "accuracy": "fast"}
 
 @pytest.fixture
 def bars(monkeypatch):
-    """All bars that are made, with what each has shown."""
+    """Return all progress bars, each with what it has shown."""
     made = []
 
     class Bar(tqdm_auto.tqdm):
@@ -62,9 +62,9 @@ ANALYSES = {
 )
 def test_one_bar_counts_all_rounds(name, bars, monkeypatch):
     ran = []
-    whole = execution._Bar.expect
+    expect = execution._Bar.expect
     monkeypatch.setattr(
-        execution._Bar, "expect", lambda bar, n, done=0: ran.append(n) or whole(bar, n, done)
+        execution._Bar, "expect", lambda bar, n, done=0: ran.append(n) or expect(bar, n, done)
     )
     ANALYSES[name](progress=True)
     (bar,) = bars
@@ -113,7 +113,7 @@ def test_a_bar_is_closed_when_something_fails(bars):
 
     with pytest.raises(RuntimeError), execution.progress_bar(True, owner="some") as bar:
         stops(bar.expect(3))
-    assert bars[0].disable  # as tqdm leaves a bar that is closed
+    assert bars[0].disable  # as tqdm marks a closed bar
 
 
 def test_notebook_widget_total_grows(monkeypatch):

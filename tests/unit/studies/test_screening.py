@@ -48,10 +48,10 @@ FALLS = Look(
 
 
 def test_verdict_is_sure_beyond_three_times_its_error():
-    # a body that stands clears the overturning angle by 0.4, or by less in the finer run
+    # the clearance of a standing body is 0.4, or less in the finer run
     for share, sure in ((0.6, True), (0.67, True), (0.71, False), (0.52, True), (0.46, False)):
         assert is_sure(STANDS, replace(STANDS, share=share)) is sure
-    # of one that falls the energy at that angle has changed by 2 omega dt of itself
+    # the energy of an overturning body changes by the share 2 omega dt
     for time, sure in ((8.0, True), (8.1, True), (8.12, False), (7.88, False)):
         assert is_sure(FALLS, replace(FALLS, time=time, left=20.0 - time)) is sure
     late = replace(FALLS, left=0.1)
@@ -64,7 +64,7 @@ def test_verdict_is_sure_beyond_three_times_its_error():
     ):
         assert not is_sure(FALLS, other)
     assert is_sure(FALLS, replace(FALLS, impacts=21))
-    # whichever of both runs has less time left, or more impacts
+    # the run with less time left, or with more impacts, decides
     soon = replace(FALLS, time=8.02, left=0.05)
     many, more = replace(FALLS, impacts=59), replace(FALLS, impacts=62)
     for first, second in ((FALLS, soon), (soon, FALLS)):
@@ -81,7 +81,7 @@ def test_screening_repeats_only_cases_near_a_flip_at_standard(runs):
         expected = xr.where(repeated, standard[name], fast[name])
         np.testing.assert_array_equal(screen[name], expected, err_msg=str(name))
     changed = fast.overturned != standard.overturned
-    assert int(changed.sum()) > 0  # else this shows nothing
+    assert int(changed.sum()) > 0  # otherwise the test is void
     assert (screen.overturned == standard.overturned).all()
     np.testing.assert_array_equal(screen.verdict_changed, changed)
     assert {screen[name].dtype for name in SCREENED} == {np.dtype(bool)}
@@ -107,10 +107,10 @@ def test_screening_does_not_depend_on_chunks_stores_or_lanes(runs, tmp_path, mon
     cases = {**AXES, "scale": np.linspace(0.4, 1.1, 128).tolist()}
     lanes = rf.sweep(SYSTEM, shaking(), **cases, accuracy="screen")
     assert lanes.repeated.size >= MIN_CASES_IN_LANES
-    kept = rf.sweep(SYSTEM, shaking(), **cases, accuracy="screen", chunk=57, store=tmp_path / "s")
+    stored = rf.sweep(SYSTEM, shaking(), **cases, accuracy="screen", chunk=57, store=tmp_path / "s")
     several = rf.open_study(tmp_path / "s")
     few = rf.sweep(SYSTEM, shaking(), **AXES, accuracy="screen", chunk=1)
-    for one, other in ((lanes, kept), (kept, several), (runs["screen"], few)):
+    for one, other in ((lanes, stored), (stored, several), (runs["screen"], few)):
         xr.testing.assert_identical(one.drop_attrs(deep=False), other.drop_attrs(deep=False))
 
 
@@ -154,10 +154,10 @@ def on_rigid_ground():
 @pytest.mark.parametrize("name", on_rigid_ground())
 def test_screening_on_rigid_ground_runs_all_cases_at_standard(name, tmp_path):
     system = on_rigid_ground()[name]
-    asked = {"scale": np.linspace(0.3, 1.5, 24).tolist(), "gravity": ["9.81 m/s^2", "9.8 m/s^2"]}
-    plain = rf.sweep(system, shaking(), **asked)
+    axes = {"scale": np.linspace(0.3, 1.5, 24).tolist(), "gravity": ["9.81 m/s^2", "9.8 m/s^2"]}
+    plain = rf.sweep(system, shaking(), **axes)
     for store in (None, tmp_path / "study"):
-        found = rf.sweep(system, shaking(), **asked, accuracy="screen", store=store)
+        found = rf.sweep(system, shaking(), **axes, accuracy="screen", store=store)
         xr.testing.assert_identical(
             found.drop_vars(SCREENED).drop_attrs(deep=False), plain.drop_attrs(deep=False)
         )
@@ -168,7 +168,7 @@ def test_screening_on_rigid_ground_runs_all_cases_at_standard(name, tmp_path):
         assert found.attrs["accuracy"] == "standard"
         words = "all ran at 'standard', which costs less here than 'screen'."
         assert found.attrs["verdict"].endswith(words)
-    alone = rf.case(found, scale=asked["scale"][9], gravity="9.8 m/s^2").simulate(outputs=None)
+    alone = rf.case(found, scale=axes["scale"][9], gravity="9.8 m/s^2").simulate(outputs=None)
     assert alone.peak_rotation.item() == plain.peak_rotation.isel(scale=9, gravity=1).item()
 
 

@@ -1,4 +1,4 @@
-"""Sweeps of scenes with restrainers and several bodies: what is told of each, and its labels."""
+"""Sweeps of scenes with restrainers and several bodies: variables and labels of each."""
 
 import numpy as np
 import pytest
@@ -23,7 +23,7 @@ def tie(name: str, side: float, strength: str = "8 kN") -> rf.Restrainer:
 
 
 def column(drums: int) -> rf.System:
-    """Make a column of drums on one another."""
+    """Make a column of stacked drums."""
     drum = rf.Block(width="1 m", height="1.5 m", mass="2 t")
     return rf.System(rf.Stack(*[drum] * drums, interfaces=[ROUGH] * (drums - 1)), ROUGH)
 
@@ -33,7 +33,7 @@ TIED = rf.System(STATUE, PADS, tie("west", -1), tie("east", 1, "3 kN"))
 
 @pytest.fixture(scope="module")
 def broken():
-    """Sweep over what one of two ties stands; enough cases for lanes."""
+    """Sweep over the strength of one of two ties, with enough cases for lanes."""
     axes = {"west.strength": (np.linspace(1.0, 30.0, 12), "kN")}
     return rf.sweep(TIED, PULSE, axes=axes, scale=[0.3, 0.6, 1.0], **FOUR)
 
@@ -50,8 +50,8 @@ def test_broken_ties_are_counted_in_all_runs(broken, scale):
         verdict = alone.attrs["verdict"]
         assert verdict.count("broke") == (breaks > 0)
         assert ("west and east broke" in verdict) == (breaks == 2)
-    some = int((broken.broken_restrainer_count > 0).sum())
-    assert f"; in {some} a restrainer broke." in broken.attrs["verdict"]
+    cases_with_breaks = int((broken.broken_restrainer_count > 0).sum())
+    assert f"; in {cases_with_breaks} a restrainer broke." in broken.attrs["verdict"]
 
 
 def frame() -> rf.System:
@@ -62,7 +62,7 @@ def frame() -> rf.System:
 
 
 def stacked() -> rf.System:
-    """Make a statue on a plinth, rigid on rigid ground, that is tied."""
+    """Make a tied statue on a plinth on rigid ground."""
     plinth = rf.Block(width="0.9 m", height="0.8 m", mass="1500 kg")
     statue = rf.Block(width="0.5 m", height="1.5 m", mass="600 kg")
     wire = rf.Restrainer(
@@ -75,9 +75,9 @@ def stacked() -> rf.System:
 @pytest.mark.parametrize("scene", [frame, pytest.param(stacked, marks=pytest.mark.long)])
 def test_broken_restrainer_count_equals_break_events(scene):
     motion = rf.GroundMotion.type_a_pulse("1.2 m/s", "1.6 s") if scene is frame else PULSE
-    scales = [0.3, 1.3333]  # PULSE is then one of 4 m/s^2
+    scales = [0.3, 1.3333]  # with a peak of 4 m/s^2
     asked = {"accuracy": "fast", "overturning": "continue", "free_vibration": "0.1 s"}
-    with plain_python():  # nothing else compiles the equations of rigid bodies that are tied
+    with plain_python():  # no other test compiles the equations of tied rigid bodies
         runs = rf.sweep(scene(), motion, scale=scales, **asked)
         alone = [scene().simulate(motion.scaled(scale), **asked) for scale in scales]
     counts = runs.broken_restrainer_count.values.ravel().tolist()
@@ -104,8 +104,8 @@ def test_restrainers_are_labelled_by_name(tmp_path):
     runs = rf.sweep(one, PULSE, scale=[0.3, 1.0], outputs=[], store=tmp_path / "kept", **FOUR)
     assert rf.fragility(runs, limits=[limit[:2]]).limit_state.size == 2
     for lazy in (False, True):
-        kept = rf.open_study(tmp_path / "kept", lazy=lazy)
-        assert kept.restrainer.values.tolist() == ["only"]
+        stored = rf.open_study(tmp_path / "kept", lazy=lazy)
+        assert stored.restrainer.values.tolist() == ["only"]
 
 
 def test_restrainer_names_of_a_function_are_used_if_all_cases_agree():
@@ -115,20 +115,20 @@ def test_restrainer_names_of_a_function_are_used_if_all_cases_agree():
     def unlike(number: int) -> rf.System:
         return rf.System(STATUE, PADS, tie(f"tie {number}", -1))
 
-    kept = {"outputs": ["energy"], **FOUR}
-    assert rf.sweep(alike, PULSE, strength=[1.0, 9.0], **kept).restrainer.values == ["upper"]
-    assert rf.sweep(unlike, PULSE, number=[7, 8], **kept).restrainer.values == ["1"]
+    options = {"outputs": ["energy"], **FOUR}
+    assert rf.sweep(alike, PULSE, strength=[1.0, 9.0], **options).restrainer.values == ["upper"]
+    assert rf.sweep(unlike, PULSE, number=[7, 8], **options).restrainer.values == ["1"]
 
 
 @pytest.mark.wide
 def test_case_with_other_restrainer_names_warns():
-    def scene(number: int) -> rf.System:  # of so many it is not looked at all beforehand
+    def scene(number: int) -> rf.System:  # too many to be examined in advance
         names = ("east", "west") if number == 5 else ("west", "east")
         return rf.System(STATUE, PADS, *(tie(name, -1) for name in names))
 
-    asked = {"outputs": ["rotation"], "duration": "0.02 s", "accuracy": "fast"}
+    options = {"outputs": ["rotation"], "duration": "0.02 s", "accuracy": "fast"}
     with plain_python(), pytest.warns(ModelWarning, match="its restrainers are east, west, not as"):
-        runs = rf.sweep(scene, PULSE, number=range(40), **asked)
+        runs = rf.sweep(scene, PULSE, number=range(40), **options)
     assert runs.restrainer.values.tolist() == ["west", "east"]
     assert np.flatnonzero(runs.message != "none").tolist() == [5]
 
@@ -137,8 +137,8 @@ def test_case_with_other_restrainer_names_warns():
     "outputs", [None, *(pytest.param(one, marks=pytest.mark.long) for one in ([], ["energy"]))]
 )
 def test_sweep_pads_cases_with_fewer_bodies(tmp_path, outputs):
-    asked = {"drums": [3, 2, 4], "scale": [0.5, 1.0], "outputs": outputs, **FOUR}
-    runs = rf.sweep(column, PULSE, chunk=1, store=tmp_path / "kept", **asked)
+    options = {"drums": [3, 2, 4], "scale": [0.5, 1.0], "outputs": outputs, **FOUR}
+    runs = rf.sweep(column, PULSE, chunk=1, store=tmp_path / "kept", **options)
     assert runs.body.values.tolist() == [1, 2, 3, 4]
     slips = runs.peak_body_slip
     assert np.isfinite(slips).sum("body").squeeze().values.tolist() == [[3, 3], [2, 2], [4, 4]]
@@ -148,7 +148,7 @@ def test_sweep_pads_cases_with_fewer_bodies(tmp_path, outputs):
     assert alone.peak_slip == alone.peak_body_slip[0]
     xr_again = rf.open_study(tmp_path / "kept", lazy=True)
     np.testing.assert_array_equal(xr_again.peak_body_slip.values, slips.values)
-    in_memory = rf.sweep(column, PULSE, **asked)
+    in_memory = rf.sweep(column, PULSE, **options)
     np.testing.assert_array_equal(in_memory.peak_body_slip, slips)
 
 

@@ -1,6 +1,6 @@
-"""A study that is kept says what it says in memory: of every analysis, whatever motions are called.
+"""Analyses of a stored study equal those in memory, whatever its motions are called.
 
-Names are in no order, motions of different lengths, so that neither may stand for the other.
+Names are unsorted and motions differ in length, so that mistaken motions change results.
 """
 
 import inspect
@@ -148,7 +148,7 @@ def test_reopened_study_and_its_cases_equal_those_in_memory(run, tmp_path, monke
 @pytest.mark.long
 def test_cases_are_found_by_motion_name_in_another_process(tmp_path):
     plain = swept(store=tmp_path / "study")
-    told = subprocess.run(
+    output = subprocess.run(
         [sys.executable, "-W", "ignore", "-c",
          "import json, sys, rockframe as rf\n"
          "runs = rf.open_study(sys.argv[1])\n"
@@ -161,7 +161,7 @@ def test_cases_are_found_by_motion_name_in_another_process(tmp_path):
     expected = {
         name: [plain.peak_rotation.sel(motion=name, scale=1.0).item()] * 2 for name in MOTIONS
     }
-    assert json.loads(told.stdout) == expected
+    assert json.loads(output.stdout) == expected
 
 
 def test_reordered_motions_are_refused_by_the_store(tmp_path):
@@ -174,10 +174,10 @@ def test_reordered_motions_are_refused_by_the_store(tmp_path):
 def test_old_store_formats_are_refused(tmp_path):
     swept(store=tmp_path / "study")
     head = tmp_path / "study" / "study.json"
-    kept = head.read_text()
-    assert '"format": 3' in kept
+    text = head.read_text()
+    assert '"format": 3' in text
     for former in (1, 2):
-        head.write_text(kept.replace('"format": 3', f'"format": {former}'))
+        head.write_text(text.replace('"format": 3', f'"format": {former}'))
         for read in (rf.open_study, lambda path: swept(store=path)):
             with pytest.raises(StudyError, match=r"not tell for certain whose results .* again"):
                 read(tmp_path / "study")

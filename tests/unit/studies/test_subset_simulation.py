@@ -1,4 +1,4 @@
-"""Subset simulation: brute force, ties, stores, interrupts, labels, and what is refused."""
+"""Subset simulation: brute force, ties, stores, interrupts, labels, and refusals."""
 
 import numpy as np
 import pytest
@@ -25,8 +25,8 @@ SPREAD = {"width": ("normal", "0.5 m", "2 cm"), "scale": ("lognormal", 0.8, 0.15
 FAST = {"accuracy": "fast", "free_vibration": "4 s", "progress": False}
 
 
-def simulated(**asked):
-    return rf.subset_simulation(SYSTEM, **{"motions": PULSE, "spread": SPREAD, **FAST, **asked})
+def simulated(**options):
+    return rf.subset_simulation(SYSTEM, **{"motions": PULSE, "spread": SPREAD, **FAST, **options})
 
 
 @pytest.fixture(scope="module")
@@ -65,11 +65,11 @@ def test_levels_and_samples_are_consistent(found):
     weight = float(found.sample_weight.where(falls, 0.0).sum())
     assert weight == pytest.approx(product, rel=1e-12)
     assert float(found.sample_weight.sum()) == pytest.approx(1.0, rel=1e-12)
-    # a level's samples have all reached the threshold before, and its weights stand below its own
+    # all samples of a level have reached the threshold before, and its weights count below its own
     for level in found.sampling_level.values[1:]:
         inside = found.demand.values[found.sample_level.values == level]
         assert inside.min() >= found.demand_threshold.values[level - 2]
-    # runs are those of the first sample, and a candidate for each sample that begins no chain
+    # the first sample, and a candidate for each sample that does not begin a chain
     counts = np.bincount(found.sample_level)[1:]
     begun = found.chain_count.values[1:].sum()
     assert found.run_count.item() == counts.sum() - begun
@@ -83,9 +83,9 @@ def test_samples_can_be_reproduced_as_runs(found):
 
 @pytest.mark.long
 def test_same_seed_reproduces_the_result(found):
-    asked = {"cases": 300, "motions": MOTIONS, "correlation": {("width", "scale"): 0.3}}
-    assert_identical(simulated(seed=5, chunk=17, **asked), found)
-    other = simulated(seed=8, **asked)
+    options = {"cases": 300, "motions": MOTIONS, "correlation": {("width", "scale"): 0.3}}
+    assert_identical(simulated(seed=5, chunk=17, **options), found)
+    other = simulated(seed=8, **options)
     assert other.exceedance_probability.item() != found.exceedance_probability.item()
 
 
@@ -98,13 +98,13 @@ def test_same_seed_reproduces_the_result(found):
     ],
 )
 def test_probabilities_match_monte_carlo(limit, scale):
-    asked = {
+    options = {
         "motions": MOTIONS,
         "spread": {**SPREAD, "scale": ("lognormal", scale, 0.15)},
         "correlation": {("width", "scale"): 0.3},
     }
     plain = rf.probability_of_overturning(
-        SYSTEM, cases=10_000, sampling="random", seed=1, **asked, **FAST
+        SYSTEM, cases=10_000, sampling="random", seed=1, **options, **FAST
     )
     (state, *_) = limit_states([limit], owner="here")
     count = int(exceeds(plain, state).sum())
@@ -112,7 +112,7 @@ def test_probabilities_match_monte_carlo(limit, scale):
     low, high = stats.binomtest(count, 10_000).proportion_ci(0.999, method="exact")
     held, every = 0, []
     for seed in range(4):
-        one = simulated(cases=400, limit=limit, seed=seed, **asked)
+        one = simulated(cases=400, limit=limit, seed=seed, **options)
         ends = [float(one[f"exceedance_probability_{end}_bound"]) for end in ("lower", "upper")]
         held += ends[0] <= high
         held += ends[1] >= low
@@ -158,7 +158,7 @@ def test_a_limit_state_at_a_point():
 
 @pytest.mark.long
 def test_samples_at_rest_share_one_level():
-    """Most of the samples do not move: the share of the first level is that of those that do."""
+    """Most samples do not move, so that the first level has the share of those that do."""
     weak = rf.GroundMotion.sine_pulse("1.9 m/s^2", "1.2 Hz")
     spread = {"width": ("normal", "0.5 m", "2 cm"), "scale": ("lognormal", 0.8, 0.22)}
     found = simulated(motions=weak, spread=spread, cases=400)
@@ -243,15 +243,15 @@ def test_cases_that_cannot_be_assembled_are_counted():
 
 @pytest.mark.wide
 def test_interrupted_subset_simulation_warns_and_resumes(tmp_path, monkeypatch):
-    whole = simulated(cases=200)
+    complete = simulated(cases=200)
     run = lines.run_study
     left = [14]
 
-    def interrupted(*given, **named):
+    def interrupted(*args, **kwargs):
         if not left[0]:
             raise KeyboardInterrupt
         left[0] -= 1
-        return run(*given, **named)
+        return run(*args, **kwargs)
 
     with monkeypatch.context() as keys:
         keys.setattr(lines, "run_study", interrupted)
@@ -261,18 +261,18 @@ def test_interrupted_subset_simulation_warns_and_resumes(tmp_path, monkeypatch):
         assert np.isnan(part.exceedance_probability)
         assert part.sizes["sampling_level"] == 2
         bound = part.exceedance_probability_upper_bound.item()
-        assert whole.exceedance_probability.item() < bound < 1.0
+        assert complete.exceedance_probability.item() < bound < 1.0
         with pytest.raises(StudyError, match=r"interrupted at level 1$"):
             simulated(cases=200)
-    assert_identical(simulated(cases=200, store=tmp_path / "study"), whole)
+    assert_identical(simulated(cases=200, store=tmp_path / "study"), complete)
     assert (tmp_path / "study" / "level 02 step 01").is_dir()
 
 
-# what is refused ---------------------------------------------------------------------------------
+# refusals ---------------------------------------------------------------------------------
 
 
 @pytest.mark.parametrize(
-    ("asked", "words"),
+    ("options", "words"),
     [
         ({"limit": "uplift"}, r"limit 'uplift' is met or not, .* such as 0\.1"),
         ({"limit": ("peak_slip", None)}, "limit 'peak slip' is met or not"),
@@ -289,9 +289,9 @@ def test_interrupted_subset_simulation_warns_and_resumes(tmp_path, monkeypatch):
         ({"correlation": {("width", "height"): 0.2}}, "correlation needs pairs of two of width, s"),
     ],
 )
-def test_invalid_subset_simulation_arguments_are_refused(asked, words):
+def test_invalid_subset_simulation_arguments_are_refused(options, words):
     with pytest.raises(ComponentError, match=words):
-        simulated(**asked)
+        simulated(**options)
 
 
 def test_missing_limit_variables_are_named():

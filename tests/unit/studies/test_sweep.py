@@ -1,4 +1,4 @@
-"""Running a sweep: cases that fail, histories, who runs it, interrupts, and cases alone."""
+"""Running a sweep: failing cases, histories, executors, interrupts, and single cases."""
 
 import itertools
 import json
@@ -45,8 +45,8 @@ SHAKING = rf.GroundMotion.stochastic(6.0, "10 km", seed=4).window("0 s", "8 s")
 FAST = {"accuracy": "fast", "free_vibration": "1 s"}
 
 
-def same(one, other):
-    """Whether two sweeps are the same to the last bit, but for the time of day."""
+def are_equal(one, other):
+    """Return whether two sweeps are equal bit for bit, apart from the time of day."""
     one, other = one.copy(), other.copy()
     del one.attrs["history"], other.attrs["history"]
     assert one.identical(other)
@@ -61,7 +61,7 @@ def on_pads(frequency_ratio, height):
     return rf.System(BLOCK.replace(height=height), PADS.replace(frequency_ratio=frequency_ratio))
 
 
-def the_same_sweep(**means):
+def example_sweep(**means):
     """Sweep with failures, two motions, and histories."""
     return rf.sweep(
         on_pads, {"pulse": PULSE, "shaking": SHAKING}, scale=[0.5, 1.0, 2.0],
@@ -71,12 +71,12 @@ def the_same_sweep(**means):
 
 
 @pytest.fixture(scope="module")
-def plain():
+def reference_sweep():
     with (
         pytest.warns(SolverWarning, match="12 of 36 cases have no result"),
         ThreadPoolExecutor(1) as one,
     ):
-        return the_same_sweep(executor=one, chunk=36)
+        return example_sweep(executor=one, chunk=36)
 
 
 POOLS = {
@@ -97,47 +97,47 @@ POOLS = {
     ],
 )
 @pytest.mark.filterwarnings("ignore::rockframe.errors.SolverWarning")
-def test_cases_do_not_depend_on_chunks_or_executor(plain, who):
+def test_cases_do_not_depend_on_chunks_or_executor(reference_sweep, who):
     with POOLS[who]() as pool:
         for chunk in (7, 1000) if who == "two processes" else (1, 7, 1000):
-            assert same(the_same_sweep(chunk=chunk, executor=pool), plain)
+            assert are_equal(example_sweep(chunk=chunk, executor=pool), reference_sweep)
 
 
-def test_failed_cases_are_gaps_with_a_message(plain):
-    squat = plain.sel(height=0.3)
+def test_failed_cases_are_gaps_with_a_message(reference_sweep):
+    squat = reference_sweep.sel(height=0.3)
     assert (squat.status == RunStatus.REFUSED).all()
-    told = plain.message
-    assert told.dims == plain.status.dims
-    assert all("cannot rock" in text for text in told.sel(height=0.3).values.ravel())
-    assert set(told.sel(height=[3.0, 4.0]).values.ravel()) <= {"none", STILL_MOVING}
+    messages = reference_sweep.message
+    assert messages.dims == reference_sweep.status.dims
+    assert all("cannot rock" in text for text in messages.sel(height=0.3).values.ravel())
+    assert set(messages.sel(height=[3.0, 4.0]).values.ravel()) <= {"none", STILL_MOVING}
     for name in labelling.COMMON_SCALARS:
-        assert plain[name].dtype == np.float64
+        assert reference_sweep[name].dtype == np.float64
         assert squat[name].isnull().all()
-    rest = plain.sel(height=[3.0, 4.0])
+    rest = reference_sweep.sel(height=[3.0, 4.0])
     assert rest.overturned.notnull().all()
-    assert plain.attrs["verdict"].endswith("; 12 have no result.")
-    assert "12 have" in plain.attrs["verdict"]
+    assert reference_sweep.attrs["verdict"].endswith("; 12 have no result.")
+    assert "12 have" in reference_sweep.attrs["verdict"]
     with pytest.raises(AssemblyError, match="cannot rock"):
-        rf.case(plain, scale=1.0, frequency_ratio=10, height=0.3, motion="pulse")
+        rf.case(reference_sweep, scale=1.0, frequency_ratio=10, height=0.3, motion="pulse")
 
 
-def test_histories_share_a_time_axis(plain):
-    assert plain.rotation.dims == (*plain.status.dims, "time")
-    assert "angular_velocity" not in plain
-    np.testing.assert_array_equal(plain.time, np.arange(plain.time.size) * 0.05)
-    assert plain.time[-1].item() == pytest.approx(9.0)
+def test_histories_share_a_time_axis(reference_sweep):
+    assert reference_sweep.rotation.dims == (*reference_sweep.status.dims, "time")
+    assert "angular_velocity" not in reference_sweep
+    np.testing.assert_array_equal(reference_sweep.time, np.arange(reference_sweep.time.size) * 0.05)
+    assert reference_sweep.time[-1].item() == pytest.approx(9.0)
     for motion, end in (("pulse", 2.0), ("shaking", 9.0)):
-        case = rf.case(plain, scale=1.0, frequency_ratio=15, height=4.0, motion=motion)
+        case = rf.case(reference_sweep, scale=1.0, frequency_ratio=15, height=4.0, motion=motion)
         alone = case.simulate()
-        kept = plain.sel(scale=1.0, frequency_ratio=15, height=4.0, motion=motion)
+        case = reference_sweep.sel(scale=1.0, frequency_ratio=15, height=4.0, motion=motion)
         assert alone.time[-1].item() == pytest.approx(end)
         for name in ("rotation", "contact_state"):
-            np.testing.assert_array_equal(kept[name][: alone.time.size], alone[name])
-            assert kept[name][alone.time.size :].isnull().all()
-        scalars = [name for name in kept.data_vars if not kept[name].dims and name in alone]
+            np.testing.assert_array_equal(case[name][: alone.time.size], alone[name])
+            assert case[name][alone.time.size :].isnull().all()
+        scalars = [name for name in case.data_vars if not case[name].dims and name in alone]
         assert len(scalars) > 10
         for name in scalars:
-            np.testing.assert_array_equal(kept[name], alone[name], err_msg=name)
+            np.testing.assert_array_equal(case[name], alone[name], err_msg=name)
 
 
 def test_run_ending_between_samples_adds_no_time():
@@ -148,17 +148,19 @@ def test_run_ending_between_samples_adds_no_time():
     alone = rf.case(runs).simulate()
     inside = alone.time < alone.time[-1]
     assert alone.time[-1].item() % 0.1 != 0.0
-    kept = runs.rotation.squeeze().dropna("time")
-    np.testing.assert_array_equal(kept, alone.rotation[inside])
+    samples = runs.rotation.squeeze().dropna("time")
+    np.testing.assert_array_equal(samples, alone.rotation[inside])
     assert {"left_reaction", "base_shear", "peak_base_shear"} <= set(runs.data_vars)
     assert runs.peak_base_shear.item() == alone.peak_base_shear.item()
 
 
 def test_unfinished_runs_have_a_status():
     few = rf.Accuracy(rtol=1e-6, max_steps=450)
-    with pytest.warns(SolverWarning, match=r"1 of 2 cases have no result.*limit of steps") as said:
+    with pytest.warns(
+        SolverWarning, match=r"1 of 2 cases have no result.*limit of steps"
+    ) as caught:
         runs = rf.sweep(SYSTEM, PULSE, scale=[0.5, 1.2], accuracy=few, duration="3 s")
-    assert len(said) == 1
+    assert len(caught) == 1
     first, second = runs.isel(motion=0, scale=0), runs.isel(motion=0, scale=1)
     broken = first if first.status == Status.STEP_LIMIT else second
     assert broken.status.item() == Status.STEP_LIMIT
@@ -175,9 +177,11 @@ def test_sweep_statuses_extend_run_statuses():
 def test_warnings_of_runs_are_stored_and_summarized():
     lifting = PULSE.with_vertical(PULSE.scaled(6.0))
     system = rf.System(BLOCK)
-    with pytest.warns(ModelWarning, match="1 of 2 cases have a result to be careful with") as said:
+    with pytest.warns(
+        ModelWarning, match="1 of 2 cases have a result to be careful with"
+    ) as caught:
         runs = rf.sweep(system, [PULSE, lifting], scale=[1.0], **FAST)
-    assert len(said) == 1
+    assert len(caught) == 1
     text = runs.message[0, 1].item()
     with pytest.warns(ModelWarning):
         assert system.simulate(lifting, **FAST, outputs=None).attrs["cautions"] == text
@@ -188,9 +192,11 @@ def test_warnings_of_runs_are_stored_and_summarized():
     "scene", [SYSTEM, lambda frequency_ratio: on_pads(frequency_ratio, "3.6 m")]
 )
 def test_warnings_of_scenes_are_stored(scene):
-    with pytest.warns(ModelWarning, match="1 of 2 cases have a result to be careful with") as said:
+    with pytest.warns(
+        ModelWarning, match="1 of 2 cases have a result to be careful with"
+    ) as caught:
         runs = rf.sweep(scene, PULSE, frequency_ratio=[5, 20], **FAST)
-    assert len(said) == 1
+    assert len(caught) == 1
     assert "too soft to hold" in runs.message.values[0, 0]
     assert runs.message.values[1, 0] == "none"
 
@@ -203,9 +209,9 @@ def test_exception_in_scene_function_fails_only_its_case():
 
     with pytest.warns(SolverWarning, match="2 of 3"):
         runs = rf.sweep(scene, PULSE, width=["0.4 m", "0.8 m", "1.2 m"], **FAST)
-    told = runs.message.values[:, 0].tolist()
-    assert "must return a System, got None" in told[0]
-    assert told[1:] == ["none", "ZeroDivisionError: division by zero"]
+    messages = runs.message.values[:, 0].tolist()
+    assert "must return a System, got None" in messages[0]
+    assert messages[1:] == ["none", "ZeroDivisionError: division by zero"]
     assert runs.status.values[:, 0].tolist() == [RunStatus.REFUSED, 0, RunStatus.REFUSED]
 
 
@@ -241,15 +247,15 @@ def test_compiled_integration_releases_the_gil():
 
 def test_interrupt_returns_finished_cases():
     scales = np.linspace(0.1, 2.0, 20)
-    with pytest.warns(SolverWarning) as said:
+    with pytest.warns(SolverWarning) as caught:
         runs = rf.sweep(SYSTEM, PULSE, scale=scales, **FAST, chunk=3, executor=Interrupting(4))
-    assert "interrupted" in str(said[0].message)
-    assert "8 of 20 cases have not been run" in str(said[1].message)
+    assert "interrupted" in str(caught[0].message)
+    assert "8 of 20 cases have not been run" in str(caught[1].message)
     assert (runs.status[:12] == 0).all()
     assert (runs.status[12:] == RunStatus.NOT_RUN).all()
     assert runs.peak_rotation[12:].isnull().all()
-    whole = rf.sweep(SYSTEM, PULSE, scale=scales, **FAST)
-    np.testing.assert_array_equal(runs.peak_rotation[:12], whole.peak_rotation[:12])
+    complete = rf.sweep(SYSTEM, PULSE, scale=scales, **FAST)
+    np.testing.assert_array_equal(runs.peak_rotation[:12], complete.peak_rotation[:12])
 
 
 @pytest.mark.wide
@@ -263,7 +269,7 @@ def test_sigint_interrupts_own_threads(request):
         time.sleep(0.01)
         return on_pads(20, height)
 
-    # in the background of a shell it is ignored from the start
+    # a background process of a shell ignores the signal
     before = signal.signal(signal.SIGINT, signal.default_int_handler)
     request.addfinalizer(lambda: signal.signal(signal.SIGINT, before))
     rf.sweep(scene, PULSE, height=([3.0], "m"), **FAST)  # loads machine code, or compiles it
@@ -300,7 +306,7 @@ def test_dask_runs_it_too():
         runs = rf.sweep(
             SYSTEM, PULSE, scale=scales, executor=client.get_executor(), chunk=2, **FAST
         )
-    assert same(runs, rf.sweep(SYSTEM, PULSE, scale=scales, **FAST))
+    assert are_equal(runs, rf.sweep(SYSTEM, PULSE, scale=scales, **FAST))
 
 
 def test_a_bar_counts_the_cases(capsys):
@@ -347,12 +353,12 @@ def test_case_is_found_by_labels_motions_and_scene(tmp_path, monkeypatch):
 
 
 def test_unknown_history_of_a_sweep_warns():
-    asked = {"scale": [0.5, 1.0], "duration": "0.1 s", "accuracy": "fast"}
+    options = {"scale": [0.5, 1.0], "duration": "0.1 s", "accuracy": "fast"}
     with pytest.warns(ModelWarning, match="outputs names 'slip', which no scene of the cases has"):
-        runs = rf.sweep(SYSTEM, PULSE, outputs=["slip", "rotation"], **asked)
+        runs = rf.sweep(SYSTEM, PULSE, outputs=["slip", "rotation"], **options)
     assert runs.rotation.dims == ("scale", "motion", "time")
     with pytest.raises(StudyError, match="a sweep keeps histories over time alone, and at points"):
-        rf.sweep(SYSTEM, PULSE, outputs=["body_rotation"], **asked)
+        rf.sweep(SYSTEM, PULSE, outputs=["body_rotation"], **options)
 
 
 def test_analysis_rounds_do_not_evict_records_of_sweeps(monkeypatch):
@@ -361,7 +367,7 @@ def test_analysis_rounds_do_not_evict_records_of_sweeps(monkeypatch):
     record, rigid = rf.GroundMotion.from_arrays((pulse, "m/s^2"), "0.02 s"), rf.System(BLOCK)
     runs = rf.sweep(rigid, record, **FAST)
     analysis = rf.incremental_dynamic_analysis(rigid, record, scale=[1.0, 20.0], **FAST)
-    assert analysis.capacity_scale.max() < 20.0  # found in further rounds
+    assert analysis.capacity_scale.max() < 20.0  # further rounds have found it
     assert rf.case(runs).motion.sha256 == record.sha256
     assert rf.case(analysis, scale=20.0).motion.sha256 == record.scaled(20.0).sha256
 
@@ -376,8 +382,8 @@ def test_a_case_may_be_picked_from_a_part_of_a_sweep():
     assert case.system.parts.block.si.width == 0.8
     assert rf.case(part, case=1, motion=1, scale=1.5).motion == case.motion
     assert rf.case(part.isel(case=0, motion=1)).system.parts.block.si.width == 0.9
-    told = part.sel(case=1, motion="three").peak_rotation.item()
-    assert case.simulate().peak_rotation.item() == told
+    peak = part.sel(case=1, motion="three").peak_rotation.item()
+    assert case.simulate().peak_rotation.item() == peak
     with pytest.raises(StudyError, match=r"scale has no 0\.5; it has 1\.5"):
         rf.case(part, case=1, motion=1, scale=0.5)
     with pytest.raises(SchemaError, match="without its coordinate 'scale'"):
@@ -396,7 +402,7 @@ def test_missing_cases_are_refused():
             rf.case(runs, **labels)
     part = runs.isel(width=0, scale=0)
     assert rf.case(part, motion="0").motion == rf.case(part, motion=0).motion
-    for wanted in (1, "1"):  # the name of the first, as tables write it, and the second's place
+    for wanted in (1, "1"):  # the name of the first as in tables, and the position of the second
         two = rf.sweep(SYSTEM, {"01": PULSE, "02": PULSE.scaled(2)}, **FAST)
         with pytest.raises(StudyError, match="give the name, '01'"):
             rf.case(two, motion=wanted)
@@ -407,11 +413,13 @@ def test_missing_cases_are_refused():
 
 
 def test_integrator_is_called_once_per_case(monkeypatch):
-    asked = []
-    whole = of_a_run.integrate
-    monkeypatch.setattr(of_a_run, "integrate", lambda *a, **k: asked.append(1) or whole(*a, **k))
+    calls = []
+    integrate = of_a_run.integrate
+    monkeypatch.setattr(
+        of_a_run, "integrate", lambda *a, **k: calls.append(1) or integrate(*a, **k)
+    )
     rf.sweep(SYSTEM, PULSE, scale=[0.5, 1.0], damping_ratio=[0.1, 0.2, 0.3], **FAST)
-    assert len(asked) == 6
+    assert len(calls) == 6
 
 
 def test_initial_state_axes_set_the_start_of_runs(monkeypatch):
@@ -478,7 +486,7 @@ def test_initial_state_axes_set_the_start_of_runs(monkeypatch):
     ],
 )
 def test_subset_of_a_sweep_does_not_return_a_wrong_system(axis, changes):
-    """Axes that change the system leave the one that was swept in the attributes."""
+    """Axes that change the system leave the unchanged system in the attributes."""
     runs = rf.sweep(SYSTEM, PULSE, **axis, **FAST)
     (name,) = axis
     kinds = {one["name"]: one["changes"] for one in json.loads(runs.attrs["axes_json"])}

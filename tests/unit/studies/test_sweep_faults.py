@@ -1,4 +1,4 @@
-"""A sweep in a folder: processes that are killed, and disks that are full or read-only."""
+"""A stored sweep: killed processes, and disks that are full or read-only."""
 
 import ctypes
 import os
@@ -24,42 +24,42 @@ MARK = "ROCKFRAME_TEST_MARK"
 
 
 @pytest.fixture(scope="module")
-def whole(tmp_path_factory):
+def complete(tmp_path_factory):
     folder = tmp_path_factory.mktemp("whole") / "study"
     return folder, run_sweep(folder)
 
 
-def is_part_of(part, whole):
-    """Whether what is there is what it should be; give the number of cases that are there."""
+def assert_part_of(part, complete):
+    """Check that the cases of a part equal those of the complete sweep; return their number."""
     done = part.status != RunStatus.NOT_RUN
     assert part.status.size == CASES
     for name in ("peak_rotation", "rotation"):
         if name in part:
-            np.testing.assert_array_equal(part[name].where(done), whole[name].where(done))
+            np.testing.assert_array_equal(part[name].where(done), complete[name].where(done))
     return int(done.sum())
 
 
 @pytest.mark.long
-def test_killed_sweep_resumes_to_identical_results(whole, tmp_path):
+def test_killed_sweep_resumes_to_identical_results(complete, tmp_path):
     folder, lost = tmp_path / "study", 0
     rng = random.Random(5)
     for _ in range(2):
         running = start_sweep(folder)
-        kept = len(list(folder.glob("chunk-*")))
-        while running.poll() is None and len(list(folder.glob("chunk-*"))) <= kept:
+        chunks = len(list(folder.glob("chunk-*")))
+        while running.poll() is None and len(list(folder.glob("chunk-*"))) <= chunks:
             time.sleep(0.005)
         time.sleep(rng.uniform(0.0, 0.15))
         running.kill()
         running.communicate()
-        lost += is_part_of(rf.open_study(folder), whole[1]) < CASES
+        lost += assert_part_of(rf.open_study(folder), complete[1]) < CASES
     assert lost > 0
     runs = run_sweep(folder)
-    assert as_bytes(runs) == as_bytes(whole[1])
-    assert stored_files(folder) == stored_files(whole[0])
+    assert as_bytes(runs) == as_bytes(complete[1])
+    assert stored_files(folder) == stored_files(complete[0])
 
 
-def dying(height):
-    """Return a scene; the first process of a pool that makes the eighth one is killed meanwhile."""
+def scene_killed_once(height):
+    """Return a scene; the first process of a pool that reaches the eighth one is killed."""
     mark, worker = Path(os.environ[MARK]), parent_process() is not None
     if worker and height.m_as("m") > HEIGHTS[0][7] - 0.01 and not mark.exists():
         mark.touch()
@@ -77,14 +77,14 @@ def test_killed_worker_loses_only_chunks_in_flight(tmp_path, monkeypatch):
         ProcessPoolExecutor(1, mp_context=get_context("spawn")) as pool,
         pytest.raises(StudyError, match=r"could not run a chunk: BrokenProcessPool.*have died"),
     ):
-        rf.sweep(dying, PULSE, executor=pool, store=folder, **arguments)
+        rf.sweep(scene_killed_once, PULSE, executor=pool, store=folder, **arguments)
     assert 0 < (rf.open_study(folder).status != RunStatus.NOT_RUN).sum() < 12
-    found = rf.sweep(dying, PULSE, store=folder, **arguments)
-    assert as_bytes(found) == as_bytes(rf.sweep(dying, PULSE, **arguments))
+    found = rf.sweep(scene_killed_once, PULSE, store=folder, **arguments)
+    assert as_bytes(found) == as_bytes(rf.sweep(scene_killed_once, PULSE, **arguments))
 
 
 class Disk:
-    """A file system in memory, of some size."""
+    """A file system in memory with a given size."""
 
     READ_ONLY, REMOUNT, DETACH = 1, 32, 2  # <sys/mount.h>
 
@@ -104,7 +104,7 @@ class Disk:
 
 @pytest.fixture
 def disk(tmp_path):
-    """A disk of 64 kB, where one may be mounted."""
+    """Mount a disk of 64 kB, if permitted."""
     place = tmp_path / "disk"
     place.mkdir()
     found = Disk(place)
@@ -114,25 +114,25 @@ def disk(tmp_path):
     found.leave()
 
 
-def test_full_disk_preserves_written_chunks(disk, whole):
+def test_full_disk_preserves_written_chunks(disk, complete):
     folder = disk.place / "study"
     with pytest.raises(StudyError, match=r"cannot be written.*No space left"):
         run_sweep(folder)
-    assert 0 < is_part_of(rf.open_study(folder), whole[1]) < CASES
+    assert 0 < assert_part_of(rf.open_study(folder), complete[1]) < CASES
     assert not list(folder.glob(".*"))
-    assert disk.mount("10m", Disk.REMOUNT)  # room again: the same call goes on
-    assert as_bytes(run_sweep(folder)) == as_bytes(whole[1])
-    assert stored_files(folder) == stored_files(whole[0])
+    assert disk.mount("10m", Disk.REMOUNT)  # with more room, the same call continues
+    assert as_bytes(run_sweep(folder)) == as_bytes(complete[1])
+    assert stored_files(folder) == stored_files(complete[0])
 
 
-def test_file_size_limit_raises_like_a_full_disk(whole, tmp_path):
+def test_file_size_limit_raises_like_a_full_disk(complete, tmp_path):
     resource = pytest.importorskip("resource", reason="limits as of Unix")
     folder = tmp_path / "study"
     run_sweep(folder)
     for chunk in folder.glob("chunk-00001*"):
         chunk.unlink()
-    there = is_part_of(rf.open_study(folder), whole[1])
-    assert there == CASES - 30
+    finished = assert_part_of(rf.open_study(folder), complete[1])
+    assert finished == CASES - 30
     limits = resource.getrlimit(resource.RLIMIT_FSIZE)
     resource.setrlimit(resource.RLIMIT_FSIZE, (200, limits[1]))
     try:
@@ -140,11 +140,11 @@ def test_file_size_limit_raises_like_a_full_disk(whole, tmp_path):
             run_sweep(folder)
     finally:
         resource.setrlimit(resource.RLIMIT_FSIZE, limits)
-    assert is_part_of(rf.open_study(folder), whole[1]) == there
-    assert as_bytes(run_sweep(folder)) == as_bytes(whole[1])
+    assert assert_part_of(rf.open_study(folder), complete[1]) == finished
+    assert as_bytes(run_sweep(folder)) == as_bytes(complete[1])
 
 
-def test_a_folder_that_has_become_read_only_can_be_read(disk, whole):
+def test_a_folder_that_has_become_read_only_can_be_read(disk, complete):
     folder = disk.place / "study"
     assert disk.mount("10m", Disk.REMOUNT)
     run_sweep(folder)
@@ -154,12 +154,12 @@ def test_a_folder_that_has_become_read_only_can_be_read(disk, whole):
     assert disk.mount("10m", Disk.REMOUNT)
     (folder / "chunk-000007.arrays").unlink()
     assert disk.mount("10m", flags)
-    asked = []
+    executor = []
     with pytest.raises(StudyError, match=r"cannot be kept in .*Read-only file system"):
-        run_sweep(folder, executor=asked)  # before anything runs
+        run_sweep(folder, executor=executor)  # before anything runs
     with pytest.raises(StudyError, match=r"cannot be kept in .*Read-only file system"):
         rf.sweep(SYSTEM, PULSE, scale=[1.0], store=disk.place / "another")
-    assert is_part_of(rf.open_study(folder), whole[1]) == CASES - 3
+    assert assert_part_of(rf.open_study(folder), complete[1]) == CASES - 3
 
 
 def test_pool_broken_on_submit_raises():
@@ -169,4 +169,4 @@ def test_pool_broken_on_submit_raises():
             raise BrokenExecutor(msg)
 
     with Broken(1) as pool, pytest.raises(StudyError, match=r"BrokenExecutor: a child.*have died"):
-        rf.sweep(dying, PULSE, height=HEIGHTS, executor=pool)
+        rf.sweep(scene_killed_once, PULSE, height=HEIGHTS, executor=pool)

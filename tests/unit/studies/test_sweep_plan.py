@@ -1,4 +1,4 @@
-"""What a sweep is asked for: axes, tables, motions; what is refused before anything runs."""
+"""Axes, tables and motions of a sweep, and refusals before anything runs."""
 
 import numpy as np
 import pandas as pd
@@ -41,10 +41,10 @@ def test_dimensions_are_the_axes_in_their_order_and_the_motions():
         for motion, name in ((PULSE, "one"), (OTHER, "two")):
             pads = PADS.replace(damping_ratio=0.2)
             alone = rf.System(BLOCK, pads).simulate(motion.scaled(scale), **FAST, outputs=None)
-            told = runs.isel(scale=k, damping_ratio=1).sel(motion=name)
+            single = runs.isel(scale=k, damping_ratio=1).sel(motion=name)
             for variable in alone.data_vars:
-                if variable in told:
-                    np.testing.assert_array_equal(told[variable], alone[variable])
+                if variable in single:
+                    np.testing.assert_array_equal(single[variable], alone[variable])
 
 
 @pytest.mark.parametrize(
@@ -89,11 +89,11 @@ def test_system_options_can_be_axes():
     assert dict(runs.sizes) == {
         "System.rotation": 2, "restraint": 2, "gravity": 2, "motion": 1,
     }  # fmt: skip
-    told = runs.peak_rotation.sel({"System.rotation": "small", "restraint": "centre"}).isel(
+    single = runs.peak_rotation.sel({"System.rotation": "small", "restraint": "centre"}).isel(
         gravity=1
     )
     system = rf.System(BLOCK, PADS, rotation="small", restraint="centre", gravity="3.7 m/s^2")
-    assert told.item() == system.simulate(PULSE, **FAST).peak_rotation.item()
+    assert single.item() == system.simulate(PULSE, **FAST).peak_rotation.item()
 
 
 def test_alternative_parameter_replaces_the_original():
@@ -147,12 +147,12 @@ def test_axes_that_would_not_rescale_an_explicit_inertia_are_refused(axes, words
 def test_mass_has_no_effect_on_rigid_ground_at_fixed_shape_factor():
     scaling = DRUM.replace(shape_factor=DRUM.shape_factor)
     runs = rf.sweep(rf.System(scaling), PULSE.scaled(2.0), mass=([200, 400, 800], "kg"), **FAST)
-    told = rf.System(DRUM).simulate(PULSE.scaled(2.0), **FAST).peak_rotation.item()
-    assert told != 0.0
-    np.testing.assert_allclose(runs.peak_rotation.values.ravel(), told, rtol=1e-12)
+    single = rf.System(DRUM).simulate(PULSE.scaled(2.0), **FAST).peak_rotation.item()
+    assert single != 0.0
+    np.testing.assert_allclose(runs.peak_rotation.values.ravel(), single, rtol=1e-12)
     both = {"mass": ["200 kg", "800 kg"], "inertia": ["69.79 kg*m^2", "279.17 kg*m^2"]}
     runs = rf.sweep(rf.System(DRUM), PULSE.scaled(2.0), cases=both, **FAST)
-    np.testing.assert_allclose(runs.peak_rotation.values.ravel(), told, rtol=1e-3)
+    np.testing.assert_allclose(runs.peak_rotation.values.ravel(), single, rtol=1e-3)
 
 
 def test_scaled_copies_of_a_motion_are_labelled_by_factor():
@@ -201,7 +201,7 @@ def test_a_table_has_a_row_for_each_case():
         assert case.motion == motions[runs.motion[k].item()].scaled(2.0)
         assert case.system.parts.block.si.width == runs.width[k].item()
         assert case.simulate().peak_rotation.item() == runs.peak_rotation[k, 1].item()
-    # with motions of its own dimension
+    # with motions as a separate dimension
     crossed = rf.sweep(ON_PADS, motions, cases=table.drop(columns="motion"), **FAST)
     assert dict(crossed.status.sizes) == {"case": 6, "motion": 2}
     again = crossed.peak_rotation.sel(motion="b")[[0, 3, 4]]
@@ -209,10 +209,10 @@ def test_a_table_has_a_row_for_each_case():
 
 
 def test_scene_function_receives_axis_values():
-    seen = []
+    arguments = []
 
     def scene(width, height, storeys, pads, stiff):
-        seen.append((width, height, storeys, pads, stiff))
+        arguments.append((width, height, storeys, pads, stiff))
         return tower(width, height, pads, stiff)
 
     runs = rf.sweep(
@@ -222,14 +222,14 @@ def test_scene_function_receives_axis_values():
     assert dict(runs.status.sizes) == {
         "width": 1, "height": 2, "storeys": 1, "pads": 2, "stiff": 1, "scale": 2, "motion": 1,
     }  # fmt: skip
-    width, height, storeys, pads, stiff = seen[0]
+    width, height, storeys, pads, stiff = arguments[0]
     assert width.m_as("m") == 0.8
     assert height.m_as("m") in (3.0, 3.6)
     assert (type(storeys), type(pads), type(stiff)) == (int, str, bool)
     case = rf.case(runs, height="3.6 m", pads="two", scale=1.5)
     assert case.system == tower("0.8 m", "3.6 m", "two")
-    told = runs.peak_rotation.sel(height=3.6, pads="two", scale=1.5).item()
-    assert case.simulate().peak_rotation.item() == told
+    single = runs.peak_rotation.sel(height=3.6, pads="two", scale=1.5).item()
+    assert case.simulate().peak_rotation.item() == single
 
 
 def test_the_motion_may_be_a_part_of_the_scene_or_none():
@@ -241,14 +241,14 @@ def test_the_motion_may_be_a_part_of_the_scene_or_none():
                     f=["1 Hz", "2 Hz"], scale=[1.0, 2.0], **FAST)  # fmt: skip
     assert made.motion.values.tolist() == ["of the scene"]
     motion = rf.GroundMotion.sine_pulse("2 m/s^2", "2 Hz").scaled(2.0)
-    told = rf.System(BLOCK).simulate(motion, **FAST).peak_rotation.item()
-    assert made.peak_rotation.sel(f=2.0, scale=2.0).item() == told
+    single = rf.System(BLOCK).simulate(motion, **FAST).peak_rotation.item()
+    assert made.peak_rotation.sel(f=2.0, scale=2.0).item() == single
     leaning = rf.InitialState(rotation="0.05 rad")
     free = rf.sweep(rf.System(BLOCK), initial=leaning, duration="3 s", width=["0.7 m", "0.8 m"])
     assert free.motion.values.tolist() == ["none"]
     assert rf.case(free, width="0.7 m").motion is None
-    told = rf.System(BLOCK.replace(width="0.7 m")).simulate(initial=leaning, duration="3 s")
-    assert free.impact_count[0].item() == told.impact_count.item() > 0
+    single = rf.System(BLOCK.replace(width="0.7 m")).simulate(initial=leaning, duration="3 s")
+    assert free.impact_count[0].item() == single.impact_count.item() > 0
 
 
 REFUSED = [
@@ -273,7 +273,7 @@ REFUSED = [
     ),
     (ON_PADS, PULSE, {"scale": [1.0, 2.0, 1.0]}, ["'scale' has the value 1.0 twice"]),
     (ON_PADS, PULSE, {"overturned": [1.0]}, ["'overturned' has the name of a result"]),
-    # their labels were replaced by numbers of bodies; others met the dimensions of analyses
+    # names of dimensions of datasets and analyses
     *(
         (lambda **_: ON_PADS, PULSE, {name: ["a", "b"]}, [f"'{name}' has the name of a result"])
         for name in ("body", "restrainer", "peak_slip", "limit_state", "stripe", "flip")
@@ -357,9 +357,9 @@ def test_invalid_execution_options_are_refused(option, words):
 
 
 def test_unusual_values_warn_once():
-    with pytest.warns(ModelWarning, match="damping_ratio = 5 is 500 %") as said:
+    with pytest.warns(ModelWarning, match="damping_ratio = 5 is 500 %") as caught:
         rf.sweep(ON_PADS, PULSE, damping_ratio=[0.1, 5.0, 10.0], **FAST)
-    assert len(said) == 1
+    assert len(caught) == 1
 
 
 # abbreviations ----------------------------------------------------------------------------------
@@ -384,10 +384,10 @@ def test_measure_abbreviations_are_expanded_to_full_axis_names():
     peaks = rf.sweep(system, PULSE, cases={"PGA [m/s^2]": sizes}, **FAST)
     assert peaks.peak_ground_acceleration.values.tolist() == sizes
     spread = {"PGA": ("lognormal", "3 m/s^2", 0.2), "width": ("normal", "0.5 m", "2 cm")}
-    drawn = rf.probability_of_overturning(
+    sample = rf.probability_of_overturning(
         system, PULSE, spread=spread, correlation={("PGA", "width"): 0.4}, cases=20, **FAST
     )
-    assert "peak_ground_acceleration" in drawn.parameter
+    assert "peak_ground_acceleration" in sample.parameter
     with pytest.raises(StudyError, match="'peak_ground_acceleration' is given twice"):
         rf.sweep(system, PULSE, PGA=["1 m/s^2"], peak_ground_acceleration=["2 m/s^2"])
     with pytest.raises(StudyError, match="all scale the motion"):

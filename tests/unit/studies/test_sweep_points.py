@@ -1,4 +1,4 @@
-"""Sweeps that tell of points of the body: peaks over `point`, and histories on request."""
+"""Points of the body in sweeps: peaks over `point`, and histories on request."""
 
 import math
 
@@ -27,11 +27,11 @@ PEAKS = [
 FAST = {"accuracy": "fast", "free_vibration": "1 s"}
 SCALES = [0.3, 0.5, 1.5]
 
-SOME = ["point_vertical_acceleration", "rotation"]
+REQUESTED = ["point_vertical_acceleration", "rotation"]
 
 
-def alone(runs, **labels):
-    """Run a case by itself, and give it with what the sweep has of it."""
+def case_alone(runs, **labels):
+    """Return the single run of a case, and the case in the sweep."""
     return rf.case(runs, **labels).simulate(), runs.sel(labels)
 
 
@@ -40,9 +40,9 @@ def alone(runs, **labels):
     [
         (ON_PADS, ()),
         (ON_GROUND, None),
-        (ON_GROUND, SOME),
+        (ON_GROUND, REQUESTED),
         pytest.param(ON_PADS, None, marks=pytest.mark.long),
-        pytest.param(ON_PADS, SOME, marks=pytest.mark.long),
+        pytest.param(ON_PADS, REQUESTED, marks=pytest.mark.long),
         pytest.param(ON_GROUND, (), marks=pytest.mark.long),
     ],
 )
@@ -54,22 +54,22 @@ def test_peaks_at_points_equal_single_runs(system, outputs):
     assert runs[PEAKS[0]].dims == ("scale", "motion", "point")
     assert runs.point.values.tolist() == list(POINTS)
     assert runs.point_x.values.tolist() == [0.0, 0.2, 0.4]
-    kept = [name for name in runs.data_vars if "time" in runs[name].dims]
-    at_points = {name for name in kept if "point" in runs[name].dims}
+    histories = [name for name in runs.data_vars if "time" in runs[name].dims]
+    at_points = {name for name in histories if "point" in runs[name].dims}
     if outputs is None:
-        assert not kept
+        assert not histories
     elif outputs:
-        assert set(kept) == set(outputs)
+        assert set(histories) == set(outputs)
         assert at_points == {"point_vertical_acceleration"}
     else:
-        assert {name.removeprefix("peak_") for name in PEAKS} == at_points < set(kept)
+        assert {name.removeprefix("peak_") for name in PEAKS} == at_points < set(histories)
     for scale in SCALES:
         for motion in MOTIONS:
-            one, part = alone(runs, scale=scale, motion=motion)
+            one, part = case_alone(runs, scale=scale, motion=motion)
             for name in (*PEAKS, "peak_base_shear", "residual_rotation", "peak_rotation"):
                 np.testing.assert_array_equal(part[name], one[name])
-            for name in kept:
-                # a run that overturns has its end as a time too
+            for name in histories:
+                # a run that overturns also has its end as a time
                 own = one[name].isel(time=np.isin(one.time, runs.time))
                 held = part[name].isel(time=slice(own.sizes["time"]))
                 np.testing.assert_array_equal(held, own)
@@ -86,9 +86,9 @@ def test_point_peaks_match_dense_histories_up_to_overturning():
         )
         assert coarse.overturned == (scale == 1.5)
         until = math.inf if scale < 1.0 else coarse.overturning_time.item()
-        stands = fine.isel(time=fine.time.values <= until)
+        standing = fine.isel(time=fine.time.values <= until)
         for name in PEAKS:
-            dense = abs(stands[name.removeprefix("peak_")]).max().item()
+            dense = abs(standing[name.removeprefix("peak_")]).max().item()
             assert fine[name].item() == pytest.approx(dense, rel=1e-3)
             assert coarse[name].item() == pytest.approx(dense, rel=0.02)
         assert "time" not in coarse.dims
@@ -105,7 +105,7 @@ def test_pivot_corner_does_not_move():
     )  # fmt: skip
     across, up = found[PEAKS[0]], found[PEAKS[1]]
     assert across.sel(point="right").item() == pytest.approx(0.0, abs=1e-15)
-    # at the start the other corner is highest: a turn about the right one, by hand
+    # at the start the other corner is highest: a rotation about the right one, by hand
     assert up.sel(point="left").item() == pytest.approx(2 * half * math.sin(0.05), rel=1e-12)
     assert across.sel(point="top").item() == pytest.approx(height * math.sin(0.05), rel=1e-12)
 
@@ -113,9 +113,9 @@ def test_pivot_corner_does_not_move():
 def test_points_survive_stores_screening_chunks_and_tables(tmp_path):
     options = {"scale": SCALES, "points": POINTS, "outputs": ["point_horizontal_acceleration"]}
     plain = rf.sweep(ON_PADS, PULSE, **options, **FAST)
-    kept = rf.sweep(ON_PADS, PULSE, **options, **FAST, store=tmp_path / "study", chunk=1)
+    stored = rf.sweep(ON_PADS, PULSE, **options, **FAST, store=tmp_path / "study", chunk=1)
     again = rf.open_study(tmp_path / "study")
-    for one in (kept, again):
+    for one in (stored, again):
         xr.testing.assert_identical(one.drop_attrs(deep=False), plain.drop_attrs(deep=False))
     part = tmp_path / "study" / "chunk-000001.arrays"
     part.unlink()
@@ -126,7 +126,7 @@ def test_points_survive_stores_screening_chunks_and_tables(tmp_path):
     assert rf.open_study(tmp_path / "study")[PEAKS[2]].dims == ("scale", "motion", "point")
     screened = rf.sweep(ON_PADS, PULSE, scale=SCALES, points=POINTS, accuracy="screen")
     for scale in SCALES:
-        one, found = alone(screened, scale=scale)
+        one, found = case_alone(screened, scale=scale)
         for name in PEAKS:
             np.testing.assert_array_equal(found[name].squeeze(), one[name])
     assert len(rf.table(plain)) == len(SCALES)
@@ -145,10 +145,10 @@ def test_cases_without_a_run_have_no_peaks():
 
 
 def test_invalid_points_are_refused():
-    with pytest.raises(StudyError) as told:
+    with pytest.raises(StudyError) as caught:
         rf.sweep(ON_PADS, PULSE, scale=[1.0], points={"roof": ("1 kg", "2 m"), "shelf": "1 m"})
-    assert "points['roof']" in str(told.value)
-    assert "point 'shelf' needs two lengths" in str(told.value)
+    assert "points['roof']" in str(caught.value)
+    assert "point 'shelf' needs two lengths" in str(caught.value)
     with pytest.raises(StudyError, match=r"'point_vertical_acceleration' is of points, and there"):
         rf.sweep(ON_PADS, PULSE, scale=[1.0], outputs=["point_vertical_acceleration"])
     with pytest.raises(AssemblyError, match="is of points, and there are none"):

@@ -1,4 +1,4 @@
-"""The folder in which a sweep is kept: what it holds, when it is resumed, damaged or another's."""
+"""The folder of a stored sweep: contents, resumption, damage, and other studies."""
 
 import os
 import time
@@ -19,20 +19,20 @@ pytestmark = pytest.mark.filterwarnings("ignore::rockframe.errors.SolverWarning"
 
 
 @pytest.fixture(scope="module")
-def whole(tmp_path_factory):
+def complete(tmp_path_factory):
     folder = tmp_path_factory.mktemp("whole") / "study"
     return folder, run_sweep(folder)
 
 
-def test_what_is_kept_is_what_is_given(whole):
-    folder, runs = whole
+def test_stored_sweep_equals_sweep_in_memory(complete):
+    folder, runs = complete
     plain = run_sweep()
     assert as_bytes(runs) == as_bytes(plain)
     assert {**runs.attrs, "history": ""} == {**plain.attrs, "history": ""}
     assert rf.open_study(folder).identical(runs)
     before = stored_files(folder)
     begun = time.process_time()
-    assert run_sweep(folder, chunk=1000).identical(runs)  # it keeps to its chunks
+    assert run_sweep(folder, chunk=1000).identical(runs)  # stored chunks keep their size
     assert time.process_time() - begun < 5.0
     assert stored_files(folder) == before
     assert not list(folder.glob(".*"))
@@ -59,22 +59,22 @@ def test_many_chunks_stand_in_folders_of_their_own(tmp_path, monkeypatch):
 
 def test_it_can_be_read_while_it_runs(tmp_path):
     folder = tmp_path / "study"
-    seen = []
+    counts = []
 
     def scene(height):
         if (folder / "study.json").exists():
-            seen.append(int((rf.open_study(folder).status != RunStatus.NOT_RUN).sum()))
+            counts.append(int((rf.open_study(folder).status != RunStatus.NOT_RUN).sum()))
         return rf.System(BLOCK.replace(height=height))
 
     rf.sweep(scene, PULSE, height=(np.linspace(3, 4, 12), "m"), chunk=1, store=folder)
-    assert len(seen) == 12
-    assert 0 < max(seen) < 12  # of two threads either may look first
+    assert len(counts) == 12
+    assert 0 < max(counts) < 12  # either of two threads may read first
 
 
-def test_a_case_comes_from_the_folder_alone(whole, monkeypatch):
-    folder, runs = whole
+def test_case_is_restored_from_the_folder_alone(complete, monkeypatch):
+    folder, runs = complete
     monkeypatch.setattr(of_cases, "_studies", type(of_cases._studies)())
-    for place in (folder, runs):  # a sweep knows the folder in which it was kept
+    for place in (folder, runs):  # a sweep knows its folder
         found = rf.case(place, scale=SCALES[17], height="3.6 m", motion="noise")
         assert found.motion.sha256 == RECORD.scaled(SCALES[17]).sha256
         assert found.simulate().peak_rotation.item() == runs.peak_rotation[17, 1, 0].item()
@@ -100,8 +100,8 @@ def test_motions_with_a_vertical_component_are_kept_however_they_were_made(tmp_p
     def run(**changes):
         return rf.sweep(system, motions, scale=[1, 2], chunk=4, **changes)
 
-    plain, kept = run(), run(store=folder)
-    assert as_bytes(kept) == as_bytes(plain)
+    plain, resumable = run(), run(store=folder)
+    assert as_bytes(resumable) == as_bytes(plain)
     (folder / "chunk-000001.arrays").unlink()
     assert as_bytes(run(store=folder)) == as_bytes(plain)
     assert as_bytes(rf.open_study(folder)) == as_bytes(plain)
@@ -114,10 +114,10 @@ def test_motions_with_a_vertical_component_are_kept_however_they_were_made(tmp_p
 
 
 @pytest.fixture
-def copied(whole, tmp_path):
+def copied(complete, tmp_path):
     folder = tmp_path / "study"
     folder.mkdir()
-    for path in whole[0].iterdir():
+    for path in complete[0].iterdir():
         (folder / path.name).write_bytes(path.read_bytes())
     return folder
 
@@ -144,7 +144,7 @@ def test_another_function_is_another_study(tmp_path):
 def test_other_versions_and_damaged_files_are_refused_with_a_reason(copied):
     head, chunk = copied / "study.json", copied / "chunk-000004.arrays"
     keep, plain = head.read_text(), chunk.read_bytes()
-    for kept, words in (
+    for content, words in (
         (
             keep.replace('"format": 3', '"format": 5'),
             r"\(format 5\), which this version cannot read",
@@ -153,7 +153,7 @@ def test_other_versions_and_damaged_files_are_refused_with_a_reason(copied):
         (keep.replace('"cases":', '"kases":'), "entries are missing"),
         ("", "study.json: damaged"),
     ):
-        head.write_text(kept)
+        head.write_text(content)
         for read in (rf.open_study, run_sweep):
             with pytest.raises(StudyError, match=words):
                 read(copied)
@@ -182,7 +182,7 @@ def test_other_versions_and_damaged_files_are_refused_with_a_reason(copied):
         rf.open_study(copied)
 
 
-def test_damaged_labels_are_made_again(copied, whole):
+def test_damaged_labels_raise_and_are_rebuilt(copied, complete):
     labels = copied / "labels.arrays"
     plain = labels.read_bytes()
     labels.write_bytes(plain[:-1])
@@ -192,11 +192,11 @@ def test_damaged_labels_are_made_again(copied, whole):
     with pytest.raises(StudyError, match="another study"):
         run_sweep(copied, accuracy="fast")
     assert not labels.exists()
-    assert as_bytes(run_sweep(copied)) == as_bytes(whole[1])
+    assert as_bytes(run_sweep(copied)) == as_bytes(complete[1])
     assert labels.read_bytes() == plain
 
 
-def test_a_study_of_another_version_is_read_and_not_gone_on_with(copied, whole):
+def test_study_of_another_version_can_be_read_but_not_resumed(copied, complete):
     head, last = copied / "study.json", copied / "chunk-000039.arrays"
     head.write_text(
         head.read_text().replace(
@@ -212,9 +212,9 @@ def test_a_study_of_another_version_is_read_and_not_gone_on_with(copied, whole):
             found = rf.open_study(copied, lazy=lazy)
         assert found.attrs["rockframe_version"] == "0.0.9"
         assert found.attrs["source"].startswith("rockframe 0.0.9, ")
-        there = found.status != RunStatus.NOT_RUN
-        assert int((~there).sum()) == 3
-        expected = whole[1].peak_rotation.where(there)
+        finished = found.status != RunStatus.NOT_RUN
+        assert int((~finished).sum()) == 3
+        expected = complete[1].peak_rotation.where(finished)
         np.testing.assert_array_equal(found.peak_rotation, expected)
 
 

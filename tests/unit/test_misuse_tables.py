@@ -1,8 +1,8 @@
-"""What real users write wrongly: each row is refused in rockframe's words, which name the offender.
+"""Frequent mistakes of users: each row is refused with a message that names the wrong argument.
 
-A row is a call and what its message must say. Those of Python are written as texts, so that a fault
-names its row; those of the command line are what was typed. Junk in single arguments is
-`test_misuse.py`, names proposed are `test_messages.py`.
+A row is a call and the required words of its message. Calls in Python are texts, so that a failure
+names its row; command lines are written as typed. Junk in single arguments is tested in
+`test_misuse.py`, suggestions of names in `test_messages.py`.
 """
 
 import json
@@ -55,54 +55,56 @@ def pads(**changed):
 
 
 def tie(**changed):
-    given = {"on": ("0 m", "3 m"), "to": ("1 m", "3 m"), "stiffness": "1 MN/m"}
-    return rf.Restrainer(**{**given, **changed})
+    arguments = {"on": ("0 m", "3 m"), "to": ("1 m", "3 m"), "stiffness": "1 MN/m"}
+    return rf.Restrainer(**{**arguments, **changed})
 
 
 def frame(**changed):
-    given = {"storeys": 3, "width": "4 m", "height": "9 m", "column_width": "0.25 m",
+    arguments = {"storeys": 3, "width": "4 m", "height": "9 m", "column_width": "0.25 m",
              "beam_height": "0.3 m", "beam_width": "0.25 m", "density": "2500 kg/m^3"}  # fmt: skip
-    return rf.RegularFrame(**{**given, **changed})
+    return rf.RegularFrame(**{**arguments, **changed})
 
 
 def outline(*points, **changed):
-    given = {"unit": "m", "density": "2 t/m^3", "depth": "1 m"}
-    return rf.Block.from_outline(list(points), **{**given, **changed})
+    arguments = {"unit": "m", "density": "2 t/m^3", "depth": "1 m"}
+    return rf.Block.from_outline(list(points), **{**arguments, **changed})
 
 
-def simulate(**given):
-    return SYSTEM.simulate(PULSE, accuracy=given.pop("accuracy", "fast"), **given)
+def simulate(**arguments):
+    return SYSTEM.simulate(PULSE, accuracy=arguments.pop("accuracy", "fast"), **arguments)
 
 
-def sweep(*motions, **given):
-    return rf.sweep(SYSTEM, *(motions or (RECORD,)), accuracy="fast", progress=False, **given)
+def sweep(*motions, **arguments):
+    return rf.sweep(SYSTEM, *(motions or (RECORD,)), accuracy="fast", progress=False, **arguments)
 
 
-def ida(**given):
-    return rf.incremental_dynamic_analysis(SYSTEM, SUITE, progress=False, accuracy="fast", **given)
+def ida(**arguments):
+    return rf.incremental_dynamic_analysis(
+        SYSTEM, SUITE, progress=False, accuracy="fast", **arguments
+    )
 
 
-def critical(*motions, **given):
-    return rf.critical_scale(SYSTEM, *(motions or (RECORD,)), progress=False, **given)
+def critical(*motions, **arguments):
+    return rf.critical_scale(SYSTEM, *(motions or (RECORD,)), progress=False, **arguments)
 
 
 def map_of(pulse=rf.GroundMotion.sine_pulse, **changed):
-    given = {"amplitude": ([1.0, 2.0], "m/s^2"), "frequency": ([1.0], "Hz"), "progress": False}
-    return rf.overturning_map(SYSTEM, pulse, **{**given, **changed})
+    arguments = {"amplitude": ([1.0, 2.0], "m/s^2"), "frequency": ([1.0], "Hz"), "progress": False}
+    return rf.overturning_map(SYSTEM, pulse, **{**arguments, **changed})
 
 
 def sample(**changed):
-    given = {"spread": {"width": ("uniform", "0.7 m", "0.9 m")}, "cases": 4, "progress": False}
-    return rf.probability_of_overturning(SYSTEM, RECORD, **{**given, **changed})
+    arguments = {"spread": {"width": ("uniform", "0.7 m", "0.9 m")}, "cases": 4, "progress": False}
+    return rf.probability_of_overturning(SYSTEM, RECORD, **{**arguments, **changed})
 
 
 def decay(**changed):
-    given = {"peaks": ([0.1, 0.09, 0.08, 0.07], "rad"), "accuracy": "fast"}
-    return rf.fit_free_decay(SYSTEM, **{**given, **changed})
+    arguments = {"peaks": ([0.1, 0.09, 0.08, 0.07], "rad"), "accuracy": "fast"}
+    return rf.fit_free_decay(SYSTEM, **{**arguments, **changed})
 
 
 NAMES = {
-    # what there is not: what was meant is proposed
+    # misspelt names, with the suggestion
     "rf.GroudMotion": "'GroundMotion'",
     "rf.fragilty": "'fragility'",
     "rf.plot.respones": "'response'",
@@ -480,7 +482,7 @@ VALUES = {
     "rf.plot.sweep(xr.Dataset())": "rf.plot.sweep needs the result of a sweep",
     "rf.plot.velocity_pulse(run)": "rf.plot.velocity_pulse needs a VelocityPulse",
     "rf.plot.player(run, title=3)": "title must be a text, got 3",
-    # codes, exports, tests, proofs, parts of one's own
+    # codes, exports, tests, proofs, user-defined parts
     "rf.codes.circolare_2019(GROUND, TARGET)": "system needs a System",
     "rf.codes.circolare_2019(SYSTEM, 0.3)": "expected a GroundMotion or several",
     "rf.codes.circolare_2019(SYSTEM, TARGET)": "a damping ratio of 0.08, got 0.05",
@@ -562,7 +564,7 @@ LINES = {
 SCENE = TEMPLATES["block"].split("[run]", maxsplit=1)[0] + '[run]\naccuracy = "fast"\n'
 STUDY = 'scene = "scene.toml"\nmotions = ["record.AT2"]\n'
 FILES = {
-    # what a file of a scene, or of a study, is wrong by; the line, and what is said
+    # faults of files of scenes and studies, with the line and the message
     SCENE.replace("[block]", "[blok]"): (4, "unknown key 'blok'; was 'block'"),
     SCENE.replace("width", "widht"): (5, "unknown key 'widht'; was 'width'"),
     SCENE.replace('"0.8 m"', "0.8"): (5, "[block]: width needs a length with a unit"),
@@ -588,7 +590,7 @@ FILES = {
 
 @pytest.fixture(scope="module")
 def folder(tmp_path_factory):
-    """Make a folder with a scene, a study, a record, results, and files that are none."""
+    """Make a folder with a scene, a study, a record, results, and invalid files."""
     place = tmp_path_factory.mktemp("misuses")
     (place / "scene.toml").write_text(SCENE)
     (place / "study.toml").write_text(f"{STUDY}[axes]\nscale = [1.0]\n")
@@ -610,45 +612,45 @@ def folder(tmp_path_factory):
 
 @pytest.fixture
 def inside(folder, monkeypatch):
-    """Stand in that folder."""
+    """Change to that folder."""
     monkeypatch.chdir(folder[0])
     return folder[1]
 
 
-def answered(row, given):
-    """Carry out a row; give what was raised."""
+def exception_of(row, namespace):
+    """Evaluate a row and return the exception."""
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")
         try:
-            found = eval(row, {**LIBRARIES, **globals(), **given})  # noqa: S307
+            result = eval(row, {**LIBRARIES, **globals(), **namespace})  # noqa: S307
         except Exception as problem:
             return problem
-    return AssertionError(f"was taken: {found!r:.60}")
+    return AssertionError(f"was taken: {result!r:.60}")
 
 
-def wrong(row, words, problem):
-    """Say what is wrong with an answer; nothing if it is sound."""
-    said = str(problem)
+def fault_of(row, words, problem):
+    """Return what is wrong with an exception, or an empty text."""
+    message = str(problem)
     if not isinstance(problem, RockframeError):
-        return f"{row}: {type(problem).__name__}: {said}"
-    return None if words in said else f"{row}: says {said}"
+        return f"{row}: {type(problem).__name__}: {message}"
+    return None if words in message else f"{row}: says {message}"
 
 
 @pytest.mark.parametrize("rows", [NAMES, VALUES], ids=["names", "values"])
 def test_each_misuse_is_refused_by_its_name(rows, inside):
-    kept = sorted(Path().rglob("*"))
-    faults = [wrong(row, words, answered(row, inside)) for row, words in rows.items()]
+    files = sorted(Path().rglob("*"))
+    faults = [fault_of(row, words, exception_of(row, inside)) for row, words in rows.items()]
     assert not [one for one in faults if one]
-    assert sorted(Path().rglob("*")) == kept, "nothing is written by what is refused"
+    assert sorted(Path().rglob("*")) == files, "refused calls wrote files"
 
 
 def test_misspelt_names_get_a_suggestion(inside):
-    silent = [row for row in NAMES if "meant?" not in str(answered(row, inside))]
+    silent = [row for row in NAMES if "meant?" not in str(exception_of(row, inside))]
     assert not silent
 
 
-def typed(words, capsys):
-    """Type a command; give its exit code, and all that it said."""
+def run_command(words, capsys):
+    """Run a command; return its exit code and all its output."""
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")
         code = main(words)
@@ -656,14 +658,14 @@ def typed(words, capsys):
 
 
 def test_mistyped_command_lines_are_refused(inside, capsys):
-    kept = sorted(Path().rglob("*"))
+    files = sorted(Path().rglob("*"))
     faults = []
     for line, words in LINES.items():
-        code, said = typed(shlex.split(line), capsys)
-        if code != 2 or "Traceback" in said or words not in said:
-            faults.append(f"{line}: {code} {said}")
+        code, output = run_command(shlex.split(line), capsys)
+        if code != 2 or "Traceback" in output or words not in output:
+            faults.append(f"{line}: {code} {output}")
     assert not faults
-    assert sorted(Path().rglob("*")) == kept
+    assert sorted(Path().rglob("*")) == files
 
 
 def test_invalid_files_are_refused_with_file_name(inside, capsys, tmp_path, monkeypatch):
@@ -674,9 +676,9 @@ def test_invalid_files_are_refused_with_file_name(inside, capsys, tmp_path, monk
     for text, (line, words) in FILES.items():
         Path("wrong.toml").write_text(text)
         command = "study" if text.startswith(STUDY) else "describe"
-        code, said = typed([command, "wrong.toml"], capsys)
-        if code != 2 or f"wrong.toml, line {line}: " not in said or words not in said:
-            faults.append(f"{text.splitlines()[-3:]}: {code} {said}")
+        code, output = run_command([command, "wrong.toml"], capsys)
+        if code != 2 or f"wrong.toml, line {line}: " not in output or words not in output:
+            faults.append(f"{text.splitlines()[-3:]}: {code} {output}")
     assert not faults
 
 
@@ -685,21 +687,21 @@ def test_misuse_tables_have_hundreds_of_rows():
 
 
 def callables():
-    """All public functions and classes, and the methods of these, by their names."""
-    modules = [one for one in (getattr(rf, name) for name in rf.__all__)
-               if isinstance(one, ModuleType) and one is not rf.extension]  # fmt: skip
+    """Return all public functions, classes and their methods, with their names."""
+    modules = [value for value in (getattr(rf, name) for name in rf.__all__)
+               if isinstance(value, ModuleType) and value is not rf.extension]  # fmt: skip
     for module in (rf, *modules):
         for name in dir(module):
-            one = getattr(module, name)
-            if isclass(one) and not issubclass(one, BaseException):
-                yield name, one
-                for method in dir(one):
-                    plain = getattr_static(one, method)
+            value = getattr(module, name)
+            if isclass(value) and not issubclass(value, BaseException):
+                yield name, value
+                for method in dir(value):
+                    plain = getattr_static(value, method)
                     kinds = (FunctionType, classmethod, staticmethod)
                     if not method.startswith("_") and isinstance(plain, kinds):
-                        yield f"{name}.{method}", getattr(one, method)
-            elif callable(one) and not isclass(one):
-                yield name, one
+                        yield f"{name}.{method}", getattr(value, method)
+            elif callable(value) and not isclass(value):
+                yield name, value
 
 
 OF_PYTHON = ("MotionSuite.get", "MotionSuite.items", "MotionSuite.keys", "MotionSuite.values",
@@ -717,9 +719,9 @@ def test_wrong_arguments_raise_rockframe_errors():
             ([], {"nothing_of_the_kind": 1})
         ]  # fmt: skip
         tried += [] if name in TAKING_ANYTHING else [([None] * 60, {})]
-        for given, named in tried:
+        for arguments, named in tried:
             try:
-                one(*given, **named)
+                one(*arguments, **named)
             except ArgumentError:
                 continue
             except Exception as problem:
@@ -740,7 +742,7 @@ def test_missing_attributes_behave_as_in_python():
 
 def test_failing_property_reports_its_cause():
     class Leaning(rf.extension.Component):
-        """A part whose property needs what there is not."""
+        """A part whose property reads a missing attribute."""
 
         @property
         def angle(self):

@@ -1,7 +1,7 @@
-"""What a model shows of a state is that state's, whatever was looked at before.
+"""Outputs of a state depend on that state alone, not on states evaluated before.
 
-Equations of several bodies and links keep room for what they work out; nothing that an earlier
-state left there may be shown of another one.
+Equations of several bodies and links reuse work arrays; outputs must not contain values that an
+earlier state left there.
 """
 
 import numpy as np
@@ -49,8 +49,8 @@ SCENES = {
 }
 
 
-# of parts that others of the scenes have, too
-SECOND_LOOKS = {
+# their parts occur in other scenes, too
+LONG_SCENES = {
     "pads", "coupled", "wall on rigid ground", "wall on slippery ground", "tie on rigid ground",
     "stack of both", "stack with a wall",
 }  # fmt: skip
@@ -59,11 +59,11 @@ SECOND_LOOKS = {
 @pytest.fixture(
     scope="module",
     params=[
-        pytest.param(name, marks=[pytest.mark.long] * (name in SECOND_LOOKS)) for name in SCENES
+        pytest.param(name, marks=[pytest.mark.long] * (name in LONG_SCENES)) for name in SCENES
     ],
 )
 def run(request):
-    """Return a model, and a run of it."""
+    """Return a model and a run of it."""
     parts = [part for part in SCENES[request.param] if not isinstance(part, dict)]
     options = [part for part in SCENES[request.param] if isinstance(part, dict)]
     model = rf.System(*parts, **dict(*options)).assembly.model
@@ -74,7 +74,7 @@ def run(request):
         )  # fmt: skip
 
 
-def shown(model, run, order):
+def outputs_of(model, run, order):
     memory, row = memory_at_outputs(run)
     ground = PULSE.si.horizontal.at(run.time)
     with plain_python():
@@ -87,8 +87,8 @@ def shown(model, run, order):
 def test_columns_do_not_depend_on_earlier_states(run):
     model, trajectory = run
     forwards = np.arange(len(trajectory.time))
-    assert np.ptp(trajectory.state[:, :3], axis=0).max() > 0.0  # something moves
-    expected, found = (shown(model, trajectory, order) for order in (forwards, forwards[::-1]))
+    assert np.ptp(trajectory.state[:, :3], axis=0).max() > 0.0  # the body moves
+    expected, found = (outputs_of(model, trajectory, order) for order in (forwards, forwards[::-1]))
     for name, values in expected.items():
         np.testing.assert_array_equal(found[name][::-1], values, err_msg=name)
 
@@ -97,13 +97,13 @@ def test_energies_do_not_depend_on_earlier_states(run):
     model, trajectory = run
     with plain_python():
         expected = energies_of(model, trajectory)
-        shown(model, trajectory, np.array([len(trajectory.time) // 2]))
+        outputs_of(model, trajectory, np.array([len(trajectory.time) // 2]))
         np.testing.assert_array_equal(energies_of(model, trajectory), expected)
 
 
 def test_samples_at_step_ends_match_their_states(run):
     model, trajectory = run
-    assert len(trajectory.outputs_in_steps) == len(PULSE) // 3  # as long as the ground has samples
+    assert len(trajectory.outputs_in_steps) == len(PULSE) // 3  # while the ground has samples
     events = trajectory.events.time
     times = np.concatenate([trajectory.time, events, events])
     ground = PULSE.si.horizontal.at(times)
@@ -111,7 +111,7 @@ def test_samples_at_step_ends_match_their_states(run):
         _, found = observe_run(
             model, trajectory, (), np.column_stack([ground, np.zeros_like(ground)])
         )
-    for name, values in shown(model, trajectory, np.arange(len(trajectory.time))).items():
+    for name, values in outputs_of(model, trajectory, np.arange(len(trajectory.time))).items():
         size = np.abs(values).max()
         np.testing.assert_allclose(
             found[name][: len(values)], values, rtol=0.0, atol=1e-12 * size, err_msg=name

@@ -1,4 +1,4 @@
-"""Bodies that ties hold as they are brought slowly to a rotation, and ties whose points meet."""
+"""Tied bodies that are brought slowly to a rotation, and ties whose points coincide."""
 
 import math
 
@@ -17,20 +17,20 @@ HOLD_DOWN = rf.Restrainer(
 )
 
 
-def pulls(rotation):
-    """Return what the tie pulls while it holds: the pads give way to it, too."""
+def tie_force(rotation):
+    """Return the tie force before fracture, including the compression of the pads."""
     return TIE * HALF * math.sin(rotation) * 2.0 * PAD / (2.0 * PAD + TIE)
 
 
 @pytest.mark.parametrize("share", [0.1, 0.5, 0.9, 0.99, 1.01, 1.2, 3.0])
 def test_tie_holds_up_to_its_strength(share):
-    """At the height of a body without it, it would be broken from a share of 0.29 on."""
-    rotation = share * STRENGTH / pulls(1e-6) * 1e-6
+    """At the height of an untied body, the tie would be broken from a share of 0.29."""
+    rotation = share * STRENGTH / tie_force(1e-6) * 1e-6
     held = rf.System(BLOCK, PADS, HOLD_DOWN, restraint="centre")
     free = rf.System(BLOCK, PADS, restraint="centre")
     more = held.setting.statics(rotation).restoring_moment
     more -= free.setting.statics(rotation).restoring_moment
-    expected = HALF * pulls(rotation) if share < 1.0 else 0.0
+    expected = HALF * tie_force(rotation) if share < 1.0 else 0.0
     assert more == pytest.approx(expected, rel=1e-4, abs=1e-6 * HALF * STRENGTH)
 
 
@@ -40,16 +40,16 @@ def test_tie_fracture_does_not_depend_on_number_of_rotations():
     stack = rf.Stack(BLOCK, lower, interfaces=[PADS])
     system = rf.System(stack, PADS, tie, restraint="centre")
     stronger = rf.System(stack, PADS, tie.replace(strength="1 MN"), restraint="centre")
-    limit = STRENGTH / pulls(1e-6) * 1e-6  # about: the lower pads give way, too
+    limit = STRENGTH / tie_force(1e-6) * 1e-6  # approximately, since the lower pads yield, too
     rotations = [share * limit for share in (0.3, 0.6, 0.9, 1.2, 3.0)]
-    together = [one.restoring_moment for one in system.setting.held_at(rotations)]
+    joint = [one.restoring_moment for one in system.setting.held_at(rotations)]
     alone = [system.setting.statics(one).restoring_moment for one in rotations]
-    assert alone == pytest.approx(together, rel=1e-9)
+    assert alone == pytest.approx(joint, rel=1e-9)
     assert alone[0] == pytest.approx(stronger.setting.statics(rotations[0]).restoring_moment)
 
 
 def test_coincident_tie_points_tolerate_rounding():
-    """A tie of no length, of points that are given by heights of bodies, added up."""
+    """A tie of zero length between points given by summed heights of bodies."""
     statue = rf.Block(width="1.294 m", height="3.574 m", mass="146 kg")
     drum = rf.Block(width="1.636 m", height="1.1 m", mass="24 t")
     foot = rf.Block(width="1.746 m", height="3.3 m", mass="104 kg")

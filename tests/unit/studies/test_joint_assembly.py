@@ -1,6 +1,6 @@
-"""Cases that are assembled together give what each gives on its own, bit for bit.
+"""Cases that are assembled together equal cases assembled one by one, bit for bit.
 
-Random studies of each kind of scene, with every axis that its numbers follow from.
+Random studies of each kind of scene, with every axis that its numbers depend on.
 """
 
 import numpy as np
@@ -26,7 +26,7 @@ COMPILED_ANYWAY = (
     "inertia on pads",
     "rigid ground",
     "restitution",
-)  # by other tests, in lanes
+)  # by other tests in lanes
 TWICE = "cascade", "fast"
 BLOCK = rf.Block(width="2.4 m", height="9.7 m", mass="50 t")
 PADS = rf.TwoSpringSupport(frequency_ratio=20, damping_ratio=0.10)
@@ -85,8 +85,8 @@ def table(spreads, rng, count=COUNT):
     }
 
 
-def both(monkeypatch, scene, cases, motion, **options):
-    """Run a chunk together, and again with every scene on its own; tell how many ran together."""
+def run_both_ways(monkeypatch, scene, cases, motion, **options):
+    """Run a chunk assembled together and case by case; return also how many ran together."""
     monkeypatch.setattr(study, "MIN_CASES_IN_LANES", 1)
     monkeypatch.setattr(study, "COMPILING_SHARE", float("inf"))
     planned = plan_study(scene, motion, {}, cases, **options)
@@ -99,25 +99,25 @@ def both(monkeypatch, scene, cases, motion, **options):
             yield found
 
     monkeypatch.setattr(chunk, "run_assembled_together", counted)
-    together = chunk.run_chunk(job)
+    joint = chunk.run_chunk(job)
     monkeypatch.setattr(chunk, "run_assembled_together", lambda *_: iter(()))
     alone = chunk.run_chunk(job)
     monkeypatch.setattr(chunk, "run_assembled_together", run_assembled_together)
-    return together, alone, served[0]
+    return joint, alone, served[0]
 
 
-def assert_same(together, alone):
-    assert together.status.tolist() == alone.status.tolist()
-    assert together.scalars.keys() == alone.scalars.keys()
+def assert_same(joint, alone):
+    assert joint.status.tolist() == alone.status.tolist()
+    assert joint.scalars.keys() == alone.scalars.keys()
     for name, column in alone.scalars.items():
-        assert together.scalars[name].tobytes() == column.tobytes(), name
-    told = [[each.texts[k] for k in each.message] for each in (together, alone)]
-    assert told[0] == told[1]
+        assert joint.scalars[name].tobytes() == column.tobytes(), name
+    messages = [[each.texts[k] for k in each.message] for each in (joint, alone)]
+    assert messages[0] == messages[1]
 
 
 @pytest.mark.parametrize(
     ("name", "accuracy"),
-    # fixed steps of two bases in lanes are tested beside single runs
+    # fixed steps of two bases in lanes are compared with single runs elsewhere
     [
         pytest.param(name, by, marks=[pytest.mark.long] * (name not in COMPILED_ANYWAY))
         for name in STUDIES
@@ -129,8 +129,8 @@ def test_joint_assembly_is_bit_identical_to_single_assembly(monkeypatch, name, a
     scene, spreads = STUDIES[name]
     rng = np.random.default_rng([ord(letter) for letter in name])
     cases = table({**SIZE, **SCALE, **spreads}, rng)
-    together, alone, served = both(monkeypatch, scene, cases, record(), accuracy=accuracy)
-    assert_same(together, alone)
+    joint, alone, served = run_both_ways(monkeypatch, scene, cases, record(), accuracy=accuracy)
+    assert_same(joint, alone)
     assert served > 0.5 * COUNT
 
 
@@ -140,20 +140,20 @@ def test_joint_assembly_handles_starts_options_and_motions(monkeypatch):
     cases["restraint"] = rng.choice(["centre", "contact-state"], 3 * COUNT)
     cases["motion"] = rng.integers(0, 2, 3 * COUNT)
     motions = [record(5), rf.GroundMotion.sine_pulse("-3 m/s^2", "1.5 Hz")]
-    together, alone, served = both(
+    joint, alone, served = run_both_ways(
         monkeypatch, rf.System(BLOCK, PADS), cases, motions, accuracy="fast"
     )
-    assert_same(together, alone)
+    assert_same(joint, alone)
     assert served > COUNT
 
 
 def test_joint_assembly_scales_motions_to_intensity_targets(monkeypatch):
     rng = np.random.default_rng(12)
     cases = table({**SIZE, "peak_ground_acceleration": (1.0, 6.0, "m/s^2")}, rng)
-    together, alone, served = both(
+    joint, alone, served = run_both_ways(
         monkeypatch, rf.System(BLOCK), cases, record(), accuracy="standard"
     )
-    assert_same(together, alone)
+    assert_same(joint, alone)
     assert served > 0.5 * COUNT
 
 
@@ -162,11 +162,11 @@ def test_screened_studies(monkeypatch):
     monkeypatch.setattr(chunk, "MIN_CASES_IN_LANES", 1)
     small = {"Block.width": (0.4, 0.8, "m"), "Block.height": (2.0, 5.0, "m")}
     cases = table({**small, "scale": (0.5, 3.0, None)}, rng, 2 * COUNT)
-    together, alone, served = both(
+    joint, alone, served = run_both_ways(
         monkeypatch, rf.System(BLOCK, PADS), cases, record(), accuracy="screen"
     )
-    assert_same(together, alone)
-    assert 0.0 < together.scalars["repeated"].mean() < 1.0
+    assert_same(joint, alone)
+    assert 0.0 < joint.scalars["repeated"].mean() < 1.0
     assert served > COUNT
 
 
@@ -175,12 +175,14 @@ def test_invalid_cases_have_the_same_messages_in_joint_assembly(monkeypatch):
     cases = table({**SIZE, **SCALE, "restitution": (0.5, 1.0, None)}, rng)
     heights = cases["Block.height [m]"]
     heights[::7] = 0.5  # too squat to rock
-    heights[3] = 1e-200  # an inertia that vanishes
-    together, alone, _ = both(monkeypatch, rf.System(BLOCK, PADS), cases, record(), accuracy="fast")
-    assert_same(together, alone)
-    said = {together.texts[k] for k in together.message}
-    assert any("cannot rock" in text for text in said)
-    assert any("exceeds eps_max" in text for text in said)
+    heights[3] = 1e-200  # a vanishing inertia
+    joint, alone, _ = run_both_ways(
+        monkeypatch, rf.System(BLOCK, PADS), cases, record(), accuracy="fast"
+    )
+    assert_same(joint, alone)
+    messages = {joint.texts[k] for k in joint.message}
+    assert any("cannot rock" in text for text in messages)
+    assert any("exceeds eps_max" in text for text in messages)
 
 
 def test_user_functions_are_called_with_scalars(monkeypatch):
@@ -189,6 +191,6 @@ def test_user_functions_are_called_with_scalars(monkeypatch):
         return rf.System(rf.Block(width="1 m", height=height, mass="1 t"))
 
     cases = {"height [m]": np.linspace(3.0, 6.0, 40)}
-    together, alone, served = both(monkeypatch, scene, cases, record(), accuracy="fast")
-    assert_same(together, alone)
+    joint, alone, served = run_both_ways(monkeypatch, scene, cases, record(), accuracy="fast")
+    assert_same(joint, alone)
     assert served == 0

@@ -1,4 +1,4 @@
-"""What is said of a sweep: of a part of it nothing that is another's, of many cases no list."""
+"""Verdicts of parts of a sweep, and summaries of messages of many cases."""
 
 import numpy as np
 import pytest
@@ -26,42 +26,45 @@ def runs():
 def test_subset_of_a_sweep_has_its_own_verdict(runs, tmp_path):
     falls = int(runs.overturned.sum())
     assert 0 < falls < 8
-    said = f"Of all 8 cases of the sweep {falls} overturned and {8 - falls} did not."
-    assert runs.verdict == runs.rockframe.verdict == said
+    sentence = f"Of all 8 cases of the sweep {falls} overturned and {8 - falls} did not."
+    assert runs.verdict == runs.rockframe.verdict == sentence
     runs.to_netcdf(tmp_path / "runs.nc")
     with xr.open_dataset(tmp_path / "runs.nc") as read:
-        for whole in (runs, read.load()):
+        for study in (runs, read.load()):
             for part in (
-                whole.isel(scale=[0, 1]), whole.sel(motion="strong"), whole.isel(scale=0, motion=1),
-                whole.sortby("scale", ascending=False).isel(scale=slice(0, 3)),
+                study.isel(scale=[0, 1]), study.sel(motion="strong"), study.isel(scale=0, motion=1),
+                study.sortby("scale", ascending=False).isel(scale=slice(0, 3)),
             ):  # fmt: skip
                 down = int(part.overturned.sum())
                 count = part.overturned.size
                 own = f"Of {count} of the 8 cases of the sweep {down} overturned and {count - down}"
                 assert part.rockframe.verdict == f"{own} did not."
                 assert part.rockframe.verdict in part.rockframe.summary
-                assert part.attrs["verdict"] == said  # which is still true
-    assert runs.transpose().rockframe.verdict == said
-    assert runs.mean("motion", keep_attrs=True).rockframe.verdict == said
+                assert part.attrs["verdict"] == sentence  # it is still true
+    assert runs.transpose().rockframe.verdict == sentence
+    assert runs.mean("motion", keep_attrs=True).rockframe.verdict == sentence
     twice = rf.concat([runs, runs], "run")
     assert twice.rockframe.verdict == ""
     assert "case_count" not in twice.attrs
 
 
 def test_cases_that_were_masked_are_not_counted(runs):
-    kept = runs.isel(scale=slice(3))
+    selected = runs.isel(scale=slice(3))
     for masked in (runs.where(runs.scale < 3), runs.reindex(scale=[0.5, 1.0, 2.0, 3.0])):
-        assert masked.rockframe.verdict == kept.rockframe.verdict
-        assert masked.isel(scale=[1, 3]).rockframe.verdict == kept.isel(scale=[1]).rockframe.verdict
+        assert masked.rockframe.verdict == selected.rockframe.verdict
+        assert (
+            masked.isel(scale=[1, 3]).rockframe.verdict
+            == selected.isel(scale=[1]).rockframe.verdict
+        )
     assert runs.where(runs.scale > 0).rockframe.verdict == runs.verdict
 
 
 def test_figure_of_a_subset_is_titled_with_its_verdict():
     axes = pytest.importorskip("matplotlib.pyplot")
-    drawn = rf.probability_of_overturning(
+    sample = rf.probability_of_overturning(
         rf.System(BLOCK), MOTIONS, spread={"scale": ("lognormal", 1.0, 0.4)}, cases=20
     )
-    for part, words in ((drawn, drawn.verdict), (drawn.isel(case=slice(15)), "Of 15 of the 20")):
+    for part, words in ((sample, sample.verdict), (sample.isel(case=slice(15)), "Of 15 of the 20")):
         panels = part.rockframe.plot()
         assert words[:30] in " ".join(panels[0].figure.get_suptitle().split())
         axes.close(panels[0].figure)
@@ -83,26 +86,26 @@ def test_messages_of_many_cases_are_merged(tmp_path):
     one = few.message.values[0, 0]
     text = many.message.values[-1, 0]
     assert " to " in text
-    for said in (text, one):
-        assert said.startswith("the block would slide from ")
-        assert " of 0.1, and more than that for " in said
+    for message in (text, one):
+        assert message.startswith("the block would slide from ")
+        assert " of 0.1, and more than that for " in message
     for rows in (many.to_dataframe(), rf.table(many)):
         assert len(rows) == len(scales)
         assert rows["message"].tolist() == many.message.values.ravel().tolist()
-    assert "message" not in many.mean("scale").variables  # texts are no numbers
+    assert "message" not in many.mean("scale").variables  # texts have no mean
     assert_identical(swept(chunk=5), many)
     assert_identical(swept(chunk=7, store=tmp_path / "study"), many)
 
 
 def test_warning_quotes_the_most_frequent_caution():
-    for texts, said in (
+    for texts, caution in (
         (["none", "slides beyond", "soft", "soft", "none"], "3 .*; of 2 of them it is said: soft"),
         (["soft", "slides 3 m", "slides 1 m", "none", "soft 1"], "4 .* of 2 .* slides 1 to 3 m$"),
         (["soft", "slides 3 m", "none", "none", "none"], "2 of 5 .* of 1 .* said: soft"),
     ):
         values = {"status": np.zeros(5), "peak_rotation": np.zeros(5), "message": np.array(texts)}
         runs = xr.Dataset({name: ("case", some) for name, some in values.items()})
-        with pytest.warns(ModelWarning, match=said):
+        with pytest.warns(ModelWarning, match=caution):
             warn_of_missing_results(runs, ())
 
 

@@ -10,12 +10,12 @@ NORTH = rf.GroundMotion.stochastic(6.0, "10 km", seed=1).window("9 s", "15 s")
 EAST = rf.GroundMotion.stochastic(6.0, "10 km", seed=2).window("9 s", "15 s")
 PAIR = rf.HorizontalPair(NORTH, EAST)
 SYSTEM = rf.System(rf.Block(width="0.4 m", height="2 m", mass="300 kg"))
-HOW = {"scale": [4.0, 6.0], "free_vibration": "1 s"}
+OPTIONS = {"scale": [4.0, 6.0], "free_vibration": "1 s"}
 
 
 def test_pair_is_run_as_its_two_components():
-    runs = rf.sweep(SYSTEM, PAIR, **HOW)
-    apart = rf.sweep(SYSTEM, [NORTH, EAST], **HOW)
+    runs = rf.sweep(SYSTEM, PAIR, **OPTIONS)
+    apart = rf.sweep(SYSTEM, [NORTH, EAST], **OPTIONS)
     assert runs.motion.values.tolist() == apart.motion.values.tolist()
     np.testing.assert_array_equal(runs.peak_rotation, apart.peak_rotation)
     assert (runs.peak_rotation > 0.0).all()
@@ -23,23 +23,23 @@ def test_pair_is_run_as_its_two_components():
 
 
 def test_components_of_a_pair_are_labelled():
-    runs = rf.sweep(SYSTEM, {"station": PAIR, "pulse": rf.GroundMotion.sine_pulse()}, **HOW)
+    runs = rf.sweep(SYSTEM, {"station": PAIR, "pulse": rf.GroundMotion.sine_pulse()}, **OPTIONS)
     assert runs.motion.values.tolist() == ["station first", "station second", "pulse"]
-    told = rf.HorizontalPair(
+    pair = rf.HorizontalPair(
         *(
             rf.GroundMotion(one.si, name=one.name, metadata={"component": name})
             for one, name in ((NORTH, "N"), (EAST, "E"))
         )
     )
-    runs = rf.sweep(SYSTEM, {"station": told}, **HOW)
+    runs = rf.sweep(SYSTEM, {"station": pair}, **OPTIONS)
     assert runs.motion.values.tolist() == ["station N", "station E"]
-    found = rf.incremental_dynamic_analysis(SYSTEM, [told], **HOW, resolution=1.0)
+    found = rf.incremental_dynamic_analysis(SYSTEM, [pair], **OPTIONS, resolution=1.0)
     assert found.sizes["motion"] == 2
 
 
 def test_vertical_component_accompanies_both_directions():
     pair = rf.HorizontalPair(NORTH, EAST, NORTH.scaled(0.3))
-    runs = rf.sweep(SYSTEM, pair, **HOW)
+    runs = rf.sweep(SYSTEM, pair, **OPTIONS)
     alone = SYSTEM.simulate(EAST.with_vertical(NORTH.scaled(0.3)).scaled(6.0), free_vibration="1 s")
     assert runs.peak_rotation.values[1, 1] == alone.peak_rotation.item()
 

@@ -1,4 +1,4 @@
-"""Type hints of all public names, as notebooks and tools that read signatures find them."""
+"""Type hints of all public names, as read by notebooks and other tools."""
 
 import inspect
 from functools import cached_property

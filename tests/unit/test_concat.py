@@ -1,4 +1,4 @@
-"""Many runs in one dataset: nothing that is said of one run is said of all."""
+"""Joining runs into one dataset: attributes of single runs do not describe all."""
 
 import itertools
 
@@ -34,12 +34,12 @@ def row(runs, *scales):
     return [runs[scale] for scale in scales]
 
 
-def of_one_run(dataset):
+def run_attributes(dataset):
     return RUN_ATTRIBUTES & set(dataset.attrs)
 
 
 def test_run_attributes_list_matches_attributes_that_differ_between_runs():
-    asked = {"history", "run_json", "motion_sha256", "motion_json", "motion_history"}
+    optional = {"history", "run_json", "motion_sha256", "motion_json", "motion_history"}
     with pytest.warns(SolverWarning):
         cut = run(STANDS, accuracy=rf.Accuracy(rtol=1e-7, max_steps=40), certify=True)
     others = [
@@ -47,42 +47,46 @@ def test_run_attributes_list_matches_attributes_that_differ_between_runs():
         run(FALLS, accuracy=1e-7, certify=rf.Certification(runs=61)),
         cut,
     ]
-    told = [set(other.attrs) for other in others]
-    assert told[0] == told[1] == told[2]
+    attributes = [set(other.attrs) for other in others]
+    assert attributes[0] == attributes[1] == attributes[2]
     differing = {
         name
-        for name in told[0]
+        for name in attributes[0]
         if any(not np.array_equal(others[0].attrs[name], other.attrs[name]) for other in others)
     }
     settings = {"accuracy", "certificate_nudge", "certificate_reach", "certificate_resolution"}
-    # no run is proved, no step is of fixed length, and no body stands on another without a layer
-    of_stacks = {"impacts_of_several_modes", "impacts_of_no_mode", "corners_held_without_pressing"}
-    of_proofs = {"proof", "proof_bits", "proof_verdict"}
-    not_here = {"solver_substeps"} | of_stacks | of_proofs
-    assert differing - asked - settings == RUN_ATTRIBUTES - not_here
+    # no run is proved or has fixed steps, and no scene is a stack on rigid bases
+    only_of_stacks = {
+        "impacts_of_several_modes",
+        "impacts_of_no_mode",
+        "corners_held_without_pressing",
+    }
+    only_of_proofs = {"proof", "proof_bits", "proof_verdict"}
+    absent = {"solver_substeps"} | only_of_stacks | only_of_proofs
+    assert differing - optional - settings == RUN_ATTRIBUTES - absent
 
 
 def test_concat_never_retains_attributes_of_one_run(runs):
-    """All stand, all overturn, some do, in one step and in two, by files too."""
+    """None, all or some runs overturn; joined in one step or two, also through files."""
     rows = [row(runs, 2.0, STANDS), row(runs, FALLS, 10.0), row(runs, STANDS, FALLS)]
     for chosen in (*rows, [runs[STANDS]], [runs[STANDS]] * 2, [runs[FALLS]] * 2):
-        assert not of_one_run(rf.concat(chosen, "scale"))
+        assert not run_attributes(rf.concat(chosen, "scale"))
     for chosen in itertools.permutations(rows):
         nested = rf.concat([rf.concat(part, "scale") for part in chosen], "case")
-        assert not of_one_run(nested)
+        assert not run_attributes(nested)
         assert nested.sizes == {"case": 3, "scale": 2}
-        whole = [one.overturned.item() for part in chosen for one in part]
-        assert nested.overturned.values.ravel().tolist() == whole
+        overturned = [one.overturned.item() for part in chosen for one in part]
+        assert nested.overturned.values.ravel().tolist() == overturned
         assert nested.overturned.dtype == bool
         deeper = rf.concat([nested, nested], "system")
-        assert not of_one_run(deeper)
+        assert not run_attributes(deeper)
         longer = rf.concat([nested, nested], "case")
         assert longer.sizes == {"case": 6, "scale": 2}
-        assert not of_one_run(longer)
+        assert not run_attributes(longer)
 
 
 def test_concat_drops_run_attributes_left_by_xarray(runs):
-    """The fault: a row that all stand, beside one of which some fell, says that none did."""
+    """A row of standing runs joined with a row of some overturned ones once kept its verdict."""
     plain = [
         xr.concat(
             [one.drop_dims(["time", "event"]) for one in part],
@@ -97,11 +101,11 @@ def test_concat_drops_run_attributes_left_by_xarray(runs):
     fault = xr.concat(plain, "case", data_vars="all", combine_attrs="drop_conflicts")
     assert fault.attrs["overturned"] == 0
     assert fault.overturned.any()
-    assert not of_one_run(rf.concat(plain, "case"))
+    assert not run_attributes(rf.concat(plain, "case"))
 
 
 def test_xarray_concat_drops_conflicting_run_attributes(runs):
-    """Every run says all of it, so that what differs conflicts."""
+    """Every run has all attributes, so that differences conflict."""
     assert runs[STANDS].attrs["cautions"] == runs[FALLS].attrs["cautions"] == "none"
     warned = runs[STANDS].assign_attrs(cautions=CAUTION)
     for chosen in (row(runs, STANDS, FALLS), [runs[STANDS], warned], [warned, runs[FALLS]]):
@@ -168,9 +172,9 @@ def test_different_motions_become_a_coordinate(runs, tmp_path):
 
 def test_labels_of_quantities_are_refused(runs):
     labels = pint.get_application_registry().Quantity([3.0, 9.0], "m/s^2")
-    for given in (labels, list(labels)):
+    for quantities in (labels, list(labels)):
         with pytest.raises(SchemaError, match=r"labels with a unit come as xr\.DataArray"):
-            rf.concat(row(runs, STANDS, FALLS), "amplitude", given)
+            rf.concat(row(runs, STANDS, FALLS), "amplitude", quantities)
 
 
 def test_labels_may_have_a_unit(runs):
@@ -200,7 +204,7 @@ def test_measures_and_spectra_can_be_joined():
 def test_invalid_concat_arguments_are_refused(runs):
     one = runs[STANDS]
     joined = rf.concat([one, one], "scale", [1, 2])
-    for given, options, words in (
+    for unjoinable, options, words in (
         ([], {}, "found no runs"),
         (one, {}, "expected a list of datasets"),
         ("run.nc", {}, "expected a list of datasets"),
@@ -213,49 +217,49 @@ def test_invalid_concat_arguments_are_refused(runs):
         ([one, rf.measures.velocity_and_displacement(PULSE)], {}, "share no variables"),
     ):
         with pytest.raises(SchemaError, match=words):
-            rf.concat(given, **options)
+            rf.concat(unjoinable, **options)
 
 
 CABINET = rf.System(rf.Block(width="0.5 m", height="2 m", mass="300 kg"))
-SOME = {"free_vibration": "2 s", "scale": [0.5, 1.0, 2.0]}
+SWEEP_OPTIONS = {"free_vibration": "2 s", "scale": [0.5, 1.0, 2.0]}
 
 
 def sweep_of(widths, *pulses):
-    """Sweep over some widths, under pulses of some frequencies."""
+    """Sweep over widths, under pulses of given frequencies."""
     motions = {f"{f} Hz": rf.GroundMotion.sine_pulse("3 m/s^2", f"{f} Hz") for f in pulses or (1,)}
-    return rf.sweep(CABINET, motions, width=(widths, "m"), **SOME)
+    return rf.sweep(CABINET, motions, width=(widths, "m"), **SWEEP_OPTIONS)
 
 
 @pytest.mark.parametrize("dim", ["width", "motion"])
 def test_sweeps_differing_along_one_dimension_join_into_a_sweep(dim, tmp_path):
     if dim == "width":
         parts = [sweep_of([0.4, 0.5]), sweep_of([0.6])]
-        whole = sweep_of([0.4, 0.5, 0.6])
+        single_sweep = sweep_of([0.4, 0.5, 0.6])
     else:
         parts = [sweep_of([0.5], 1), sweep_of([0.5], 0.5, 2)]
-        whole = sweep_of([0.5], 1, 0.5, 2)
+        single_sweep = sweep_of([0.5], 1, 0.5, 2)
     joined = rf.concat(parts, dim)
-    assert joined.rockframe.verdict == whole.verdict
+    assert joined.rockframe.verdict == single_sweep.verdict
     assert joined.attrs["study_sha256"] not in [one.attrs["study_sha256"] for one in parts]
     for name in ("motion_names", "motions_json", "axes_json", "case_count", "system_json"):
-        assert joined.attrs[name] == whole.attrs[name]
+        assert joined.attrs[name] == single_sweep.attrs[name]
     last = {"width": 0.6} if dim == "width" else {"motion": "2 Hz"}
     case = rf.case(joined, scale=2.0, **last).simulate(outputs=None)
     assert case.peak_rotation.item() == joined.peak_rotation.sel(scale=2.0, **last).item()
     pooled = ["width"] if dim == "width" else []
-    found, same = (rf.fragility(one, "PGA", pooled=pooled) for one in (joined, whole))
+    found, same = (rf.fragility(one, "PGA", pooled=pooled) for one in (joined, single_sweep))
     np.testing.assert_array_equal(found.median_intensity, same.median_intensity)
     joined.to_netcdf(tmp_path / "joined.nc")
     with xr.open_dataset(tmp_path / "joined.nc") as again:
-        assert again.rockframe.verdict == whole.verdict
+        assert again.rockframe.verdict == single_sweep.verdict
 
 
 def test_sweeps_differing_otherwise_do_not_join_into_a_sweep():
     one = sweep_of([0.4, 0.5])
     pulse = {"1 Hz": rf.GroundMotion.sine_pulse("3 m/s^2", "1 Hz")}
-    worn = rf.sweep(CABINET, pulse, width=["0.4 m", "0.5 m"], restitution=[0.7], **SOME)
+    worn = rf.sweep(CABINET, pulse, width=["0.4 m", "0.5 m"], restitution=[0.7], **SWEEP_OPTIONS)
     worn = worn.isel(restitution=0, drop=True)
-    longer = rf.sweep(CABINET, pulse, width=["0.6 m"], **{**SOME, "free_vibration": "1 s"})
+    longer = rf.sweep(CABINET, pulse, width=["0.6 m"], **{**SWEEP_OPTIONS, "free_vibration": "1 s"})
     others = {
         "width": [sweep_of([0.5, 0.6]), longer],
         "base": [worn],
@@ -277,9 +281,9 @@ def test_restrainers_missing_from_a_run_become_gaps(tmp_path):
         runs = [tied("west"), tied("west", "east"), tied("east")]
     joined = rf.concat(runs, histories=True)
     assert joined.restrainer.values.tolist() == ["west", "east"]
-    there = [[True, False], [True, True], [False, True]]
-    assert joined.peak_restrainer_force.notnull().values.tolist() == there
-    assert joined.restrainer_state.notnull().all("time").values.tolist() == there
+    present = [[True, False], [True, True], [False, True]]
+    assert joined.peak_restrainer_force.notnull().values.tolist() == present
+    assert joined.restrainer_state.notnull().all("time").values.tolist() == present
     assert joined.restrainer_state.dtype == joined.restrainer_state.flag_values.dtype == float
     joined.to_netcdf(tmp_path / "joined.nc")
     xr.testing.assert_identical(xr.load_dataset(tmp_path / "joined.nc"), joined)
@@ -293,22 +297,22 @@ def test_joined_sweeps_with_gaps_equal_the_whole_sweep(tmp_path):
         return rf.System(rf.Stack(*[BLOCK] * count, interfaces=[joint] * (count - 1)), joint)
 
     def swept(*counts):
-        asked = {"accuracy": "fast", "outputs": ["rotation"], "duration": "0.2 s"}
-        return rf.sweep(drums, PULSE, count=counts, **asked)
+        options = {"accuracy": "fast", "outputs": ["rotation"], "duration": "0.2 s"}
+        return rf.sweep(drums, PULSE, count=counts, **options)
 
     with plain_python():
-        parts, whole = [swept(2), swept(3, 1)], swept(2, 3, 1)
+        parts, single_sweep = [swept(2), swept(3, 1)], swept(2, 3, 1)
     joined = rf.concat(parts, "count", histories=True)
     for name in ("overturned", "peak_body_slip", "peak_body_rotation", "rotation", "status"):
-        xr.testing.assert_identical(joined[name], whole[name])
-        flags = whole[name].attrs.get("flag_values", whole[name].values[:0])
+        xr.testing.assert_identical(joined[name], single_sweep[name])
+        flags = single_sweep[name].attrs.get("flag_values", single_sweep[name].values[:0])
         assert joined[name].attrs.get("flag_values", flags).dtype == flags.dtype
     assert np.isnan(joined.overturned[2, 0])  # a stack of one body is refused
     assert rf.case(joined, count=3, scene=drums).system == drums(3)
 
 
 def test_numbers_in_several_units_are_not_joined():
-    """They would stand in one row, without a unit."""
+    """They would be in one array without a unit."""
     one, two = run(STANDS), run(FALLS)
     turned = one.assign(peak_rotation=np.rad2deg(one.peak_rotation).assign_attrs(units="deg"))
     with pytest.raises(SchemaError, match="concat: peak_rotation is in deg and rad; put it into"):

@@ -1,4 +1,4 @@
-"""A run that has been integrated is not lost, whatever fails in telling what it showed."""
+"""Failed postprocessing does not lose an integrated run."""
 
 import math
 from functools import cached_property
@@ -14,7 +14,7 @@ from rockframe.system.setting import Setting
 
 BLOCK = rf.Block(width="0.5 m", height="2 m", mass="400 kg")
 PULSE = rf.GroundMotion.sine_pulse("3 m/s^2", "1.5 Hz")
-ASKED = {"free_vibration": "1 s", "output_step": "0.1 s"}
+PLAN = {"free_vibration": "1 s", "output_step": "0.1 s"}
 STEPS = {
     "compute_outputs": "peaks of forces",
     "may_overturn_later": "energy to overturn",
@@ -52,8 +52,8 @@ def broken_property(name):
 def failing(request, monkeypatch):
     name = request.param
     if name in OF_CLASSES:
-        way = broken if name == "to_json" else broken_property(name)
-        monkeypatch.setattr(OF_CLASSES[name], name, way)
+        failure = broken if name == "to_json" else broken_property(name)
+        monkeypatch.setattr(OF_CLASSES[name], name, failure)
     else:
         monkeypatch.setattr(running, name, broken)
     return name
@@ -61,12 +61,12 @@ def failing(request, monkeypatch):
 
 @pytest.mark.filterwarnings("ignore::rockframe.errors.SolverWarning")
 def test_failed_postprocessing_step_warns_and_run_survives(failing):
-    asked = {"accuracy": "fast" if failing == "second_look" else "standard"}
-    asked |= {"certify": failing == "certify", **ASKED}
-    found = rf.System(BLOCK).simulate(PULSE, **asked)
-    told = f"{STEPS[failing]}.* could not be computed: ZeroDivisionError: left out on purpose"
-    with pytest.warns(SolverWarning, match=told):
-        again = rf.System(BLOCK).simulate(PULSE, **asked)
+    options = {"accuracy": "fast" if failing == "second_look" else "standard"}
+    options |= {"certify": failing == "certify", **PLAN}
+    found = rf.System(BLOCK).simulate(PULSE, **options)
+    message = f"{STEPS[failing]}.* could not be computed: ZeroDivisionError: left out on purpose"
+    with pytest.warns(SolverWarning, match=message):
+        again = rf.System(BLOCK).simulate(PULSE, **options)
     assert "ZeroDivisionError: left out on purpose" in found.attrs["cautions"]
     assert again.attrs["verdict"].startswith("Did not overturn")
     assert float(again.peak_rotation) > 0.0
@@ -77,14 +77,14 @@ def test_failed_postprocessing_step_warns_and_run_survives(failing):
 def test_unknown_output_column_loses_only_histories(monkeypatch):
     answers = running.compute_outputs
 
-    def with_another(*given):
-        found = answers(*given)
+    def with_extra_column(*arguments):
+        found = answers(*arguments)
         found.values["unheard_of"] = found.values["rotation"]
         return found
 
-    monkeypatch.setattr(running, "compute_outputs", with_another)
+    monkeypatch.setattr(running, "compute_outputs", with_extra_column)
     with pytest.warns(SolverWarning, match="'unheard_of' is not in the schema"):
-        found = rf.System(BLOCK).simulate(PULSE, **ASKED)
+        found = rf.System(BLOCK).simulate(PULSE, **PLAN)
     assert float(found.peak_rotation) > 0.0
 
 
@@ -93,7 +93,7 @@ def test_failed_postprocessing_preserves_sweep_results(monkeypatch, accuracy):
     monkeypatch.setattr(running, "may_overturn_later", broken)
     with pytest.warns(ModelWarning, match="left out on purpose"):
         found = rf.sweep(
-            rf.System(BLOCK), PULSE, scale=[0.9, 1.0], accuracy=accuracy, progress=False, **ASKED
+            rf.System(BLOCK), PULSE, scale=[0.9, 1.0], accuracy=accuracy, progress=False, **PLAN
         )
     assert (found.peak_rotation > 0.0).all()
 
@@ -104,4 +104,4 @@ def test_interrupt_in_postprocessing_propagates(monkeypatch):
 
     monkeypatch.setattr(running, "may_overturn_later", interrupted)
     with pytest.raises(KeyboardInterrupt):
-        rf.System(BLOCK).simulate(PULSE, **ASKED)
+        rf.System(BLOCK).simulate(PULSE, **PLAN)

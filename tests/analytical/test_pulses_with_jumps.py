@@ -1,12 +1,12 @@
 """Overturning by pulses that begin and end with a jump, and by impulses, in closed form.
 
-The linearised block, q = alpha/theta, turns over without an impact if it is beyond its
-unstable orbit when the pulse is over:
+The linearised block, q = alpha/theta, overturns without an impact if it is beyond its
+unstable orbit at the end of the pulse:
 
     -1 + p int_0^inf exp(-p t) A(t) dt > 0,
 
-A the acceleration of the ground, turned against the block, over g theta. The integral
-starts when the block lifts off.
+A the acceleration of the ground over g theta, opposite to the rotation. The integral
+starts at uplift.
 """
 
 import math
@@ -38,7 +38,7 @@ def topples(motion):
 
 
 def straddles(threshold, motion_of):
-    """Tell whether the block topples a millionth above the threshold, and not below."""
+    """Return whether the block topples a millionth above the threshold, and not below."""
     above, below = (topples(motion_of(threshold * factor)) for factor in (1.0 + 1e-6, 1.0 - 1e-6))
     return above and not below
 
@@ -73,14 +73,14 @@ def test_type_b(ratio):
 
 
 def lift_off(height):
-    """Return the place in an impulse, of peak 15 height/8, at which it reaches g theta."""
+    """Return the position in an impulse, of peak 15 height/8, at which it reaches g theta."""
     return brentq(lambda u: height * 30.0 * (u * (1.0 - u)) ** 2 - 1.0, 0.0, 0.5, xtol=1e-15)
 
 
 @pytest.mark.parametrize("interval", [0.5, 2.0])
 @pytest.mark.parametrize("parts", [4, 100])
 def test_double_impulse(interval, parts):
-    """Times are those of the block, p t; `size` is p V over g theta."""
+    """Times are dimensionless, p t; `size` is p V over g theta."""
     length = interval / parts
 
     def excess(size):

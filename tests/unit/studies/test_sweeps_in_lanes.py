@@ -1,4 +1,4 @@
-"""Cases that run side by side in lanes give the numbers of cases that run alone, bit for bit."""
+"""Cases that run together in lanes equal single runs bit for bit."""
 
 import math
 from concurrent.futures import ProcessPoolExecutor, ThreadPoolExecutor
@@ -51,8 +51,8 @@ def on(*parts, **options):
     return scene
 
 
-def both(monkeypatch, *arguments, accuracy="fast", **options):
-    """Run a sweep in lanes, and again alone."""
+def run_both_ways(monkeypatch, *arguments, accuracy="fast", **options):
+    """Run a sweep in lanes and without."""
     found = []
     monkeypatch.setattr(study, "COMPILING_SHARE", math.inf)
     for fewest in (1, 10**9):
@@ -78,11 +78,11 @@ def assert_same_bits(lanes, alone):
         ((PADS,), {}),
         pytest.param((PADS,), {"restraint": "leading-corner"}, marks=pytest.mark.wide),
         pytest.param((PADS,), {"rotation": "small"}, marks=pytest.mark.wide),
-        # whose lanes nothing else compiles
+        # no other test compiles their lanes
         pytest.param((SOIL,), {}, marks=pytest.mark.long),
         pytest.param((PADS, CAP, SOIL), {}, marks=pytest.mark.long),
     ],
-    ids=lambda given: "-".join(str(one).split("(")[0] for one in given) or "none",
+    ids=lambda parts: "-".join(str(one).split("(")[0] for one in parts) or "none",
 )
 def test_lanes_reproduce_single_runs(monkeypatch, parts, options):
     check_scene(monkeypatch, "fast", parts, options)
@@ -98,7 +98,7 @@ def test_lanes_reproduce_single_runs(monkeypatch, parts, options):
         ((PADS,), {"rotation": "small"}),
         pytest.param((SOIL,), {}, marks=pytest.mark.long),
     ],
-    ids=lambda given: "-".join(str(one).split("(")[0] for one in given) or "none",
+    ids=lambda parts: "-".join(str(one).split("(")[0] for one in parts) or "none",
 )
 @pytest.mark.parametrize("rtol", [1e-4, 2e-8])
 def test_adaptive_lanes_reproduce_single_runs(monkeypatch, parts, options, rtol):
@@ -108,13 +108,15 @@ def test_adaptive_lanes_reproduce_single_runs(monkeypatch, parts, options, rtol)
 def test_lanes_reach_step_limit_like_single_runs(monkeypatch):
     system = rf.System(BLOCK, PADS)
     few = rf.Accuracy(rtol=1e-6, max_steps=700)
-    lanes, alone = both(monkeypatch, system, MOTIONS[:3], accuracy=few, scale=[0.2, 0.9, 1.6])
+    lanes, alone = run_both_ways(
+        monkeypatch, system, MOTIONS[:3], accuracy=few, scale=[0.2, 0.9, 1.6]
+    )
     assert_same_bits(lanes, alone)
     assert (alone.status == 3).any()
 
 
 def check_scene(monkeypatch, accuracy, parts, options):
-    lanes, alone = both(
+    lanes, alone = run_both_ways(
         monkeypatch, on(*parts, **options), MOTIONS, axes=SLENDER, scale=[0.3, 0.8, 1.5],
         free_vibration="0.7 s", accuracy=accuracy,
     )  # fmt: skip
@@ -127,9 +129,9 @@ def check_scene(monkeypatch, accuracy, parts, options):
 
 def test_lanes_leave_peaks_inside_polynomials_to_the_driver(monkeypatch):
     block = rf.Block(width="1 m", height="4 m", mass="1 t")
-    motion = rf.GroundMotion.sine_pulse("0.25 g", "1 Hz", 0.7)  # with no sample at its peak
+    motion = rf.GroundMotion.sine_pulse("0.25 g", "1 Hz", 0.7)  # no sample lies at its peak
     scales = 1.0 + np.array([-1e-6, 1e-8, 1e-6, 1e-5])
-    lanes, alone = both(monkeypatch, rf.System(block), motion, scale=scales)
+    lanes, alone = run_both_ways(monkeypatch, rf.System(block), motion, scale=scales)
     assert_same_bits(lanes, alone)
     assert (lanes.impact_count.values.ravel() > 0).tolist() == [False, True, True, True]
 
@@ -137,7 +139,7 @@ def test_lanes_leave_peaks_inside_polynomials_to_the_driver(monkeypatch):
 @pytest.mark.parametrize("course", ["stop", "continue"])
 def test_lanes_continue_or_stop_after_overturning(monkeypatch, course):
     system = rf.System(BLOCK, PADS, gravity="9.81 m/s^2")
-    lanes, alone = both(
+    lanes, alone = run_both_ways(
         monkeypatch, system, MOTIONS[:2], scale=np.linspace(0.2, 3.0, 7), damping_ratio=[0.0, 0.3],
         overturning=course, initial=rf.InitialState(rotation="0.03 rad"),
     )  # fmt: skip
@@ -147,7 +149,7 @@ def test_lanes_continue_or_stop_after_overturning(monkeypatch, course):
 
 def test_failing_cases_have_the_same_reason_in_lanes(monkeypatch):
     system = rf.System(rf.Block(width="1.2 m", height="6 m", mass="20 t"), PADS)
-    lanes, alone = both(
+    lanes, alone = run_both_ways(
         monkeypatch, system, MOTIONS[:1], height=["0.5 m", "1.5 m", "6 m"], damping_ratio=[0.1, 50]
     )
     assert_same_bits(lanes, alone)
@@ -157,12 +159,12 @@ def test_failing_cases_have_the_same_reason_in_lanes(monkeypatch):
 
 def test_lanes_handle_still_ground_and_inclined_bases(monkeypatch):
     lean = rf.InitialState(rotation="0.05 rad")
-    lanes, alone = both(
+    lanes, alone = run_both_ways(
         monkeypatch, rf.System(BLOCK, PADS), initial=lean, duration="2 s", width=["0.7 m", "0.8 m"]
     )
     assert_same_bits(lanes, alone)
     system = rf.System(BLOCK, PADS)
-    lanes, alone = both(
+    lanes, alone = run_both_ways(
         monkeypatch, system, MOTIONS[0], inclination=["0 deg", "2 deg"], scale=[0.3, 0.6]
     )
     assert_same_bits(lanes, alone)
@@ -180,15 +182,15 @@ def test_lanes_do_not_depend_on_neighbours_chunks_or_executors(monkeypatch, chun
     def swept(**options):
         return rf.sweep(system, MOTIONS[:3], axes=axes, accuracy="fast", **options)
 
-    whole = swept(chunk=1000)
+    one_chunk = swept(chunk=1000)
     with ThreadPoolExecutor(8) as pool:
-        assert_same_bits(swept(chunk=chunk, executor=pool), whole)
+        assert_same_bits(swept(chunk=chunk, executor=pool), one_chunk)
     if chunk == 7:
         with ProcessPoolExecutor(2) as pool:
-            assert_same_bits(swept(chunk=chunk, executor=pool), whole)
+            assert_same_bits(swept(chunk=chunk, executor=pool), one_chunk)
     backwards = {"scale": axes["scale"][::-1], "damping_ratio": [0.2, 0.05]}
     other = rf.sweep(system, MOTIONS[:3], axes=backwards, accuracy="fast", chunk=chunk)
-    assert_same_bits(other.isel(scale=slice(None, None, -1), damping_ratio=[1, 0]), whole)
+    assert_same_bits(other.isel(scale=slice(None, None, -1), damping_ratio=[1, 0]), one_chunk)
 
 
 @pytest.mark.parametrize("accuracy", ["fast", "standard"])
@@ -201,7 +203,7 @@ def test_lanes_do_not_depend_on_neighbours_chunks_or_executors(monkeypatch, chun
     ids=["friction on pads", "stack"],
 )
 def test_list_based_equations_are_not_prepared_for_lanes(parts, accuracy):
-    """Lanes for them cannot be compiled: an attempt takes some seconds, and is told of."""
+    """Their lanes cannot be compiled: an attempt takes some seconds, and warns."""
     planned = plan_study(rf.System(*parts), MOTIONS[0], {"scale": [1.0]}, None, accuracy=accuracy)
     case = in_lanes.CasesOfJob(planned.job(range(1)))
     assert in_lanes.prepare_lanes(*case.plan(0)) is None
@@ -255,10 +257,10 @@ def test_critical_scale_works_for_an_uncompilable_law(fallbacks):
 @pytest.mark.long
 def test_chunks_of_a_law_that_cannot_be_compiled_are_small(monkeypatch, fallbacks):
     rf.register(TabulatedPads)
-    asked = []
+    calls = []
 
     def size(self, workers, *, as_python):
-        asked.append((as_python, chunk_size(self, workers, as_python=as_python)))
+        calls.append((as_python, chunk_size(self, workers, as_python=as_python)))
         return 10
 
     chunk_size = study.Study.chunk_size
@@ -270,7 +272,7 @@ def test_chunks_of_a_law_that_cannot_be_compiled_are_small(monkeypatch, fallback
             scales = np.linspace(0.01, 0.02, 10)
             rf.sweep(scene, MOTIONS[0], axes=axes, scale=scales, duration="0.03 s")
     fallbacks.clear()
-    assert [as_python for as_python, _ in asked] == [True, True, False, False]
+    assert [as_python for as_python, _ in calls] == [True, True, False, False]
     long = plan_study(
         rf.System(BLOCK, PADS), MOTIONS[0], {"scale": np.linspace(0.1, 2.0, 9000)}, None
     )
@@ -293,14 +295,14 @@ def test_failure_in_preparing_lanes_warns_and_falls_back(monkeypatch):
     monkeypatch.setattr(study, "MIN_CASES_IN_LANES", 1)
     monkeypatch.setattr(study, "COMPILING_SHARE", math.inf)
     monkeypatch.setattr(in_lanes, "run_start", fails)
-    told = r"beside others failed \(ZeroDivisionError: no such lane\).*error in rockframe"
-    with pytest.warns(ModelWarning, match=told):
+    message = r"beside others failed \(ZeroDivisionError: no such lane\).*error in rockframe"
+    with pytest.warns(ModelWarning, match=message):
         runs = swept()
     assert runs.attrs["driver"] == "each case alone"
     for name in ("peak_rotation", "status", "impact_count"):
         xr.testing.assert_identical(runs[name].variable, alone[name].variable)
 
-    # what a user's function raises is told of that case alone
+    # an exception of a user's function is reported for its case alone
     def scene(width):
         if width > 0.9:
             raise ZeroDivisionError
@@ -315,7 +317,7 @@ def test_failure_in_preparing_lanes_warns_and_falls_back(monkeypatch):
 
 
 def test_lanes_are_compiled_only_if_they_save_time(monkeypatch):
-    system, asked = rf.System(BLOCK, PADS), []
+    system, calls = rf.System(BLOCK, PADS), []
     shaking = rf.GroundMotion.from_arrays((np.ones(1501), "m/s^2"), "0.02 s")
 
     def patience(count, **options):
@@ -331,12 +333,12 @@ def test_lanes_are_compiled_only_if_they_save_time(monkeypatch):
     assert patience(100_000, accuracy="fast") > 20.0
 
     def never(run, seconds):
-        asked.append(seconds)
+        calls.append(seconds)
         return False
 
     monkeypatch.setattr(in_lanes, "can_run_in_lanes", never)
     scales = np.linspace(0.1, 0.2, 500)
     runs = rf.sweep(system, MOTIONS[3], scale=scales, accuracy="fast", duration="0.1 s")
-    assert asked
-    assert max(asked) < 1.0
+    assert calls
+    assert max(calls) < 1.0
     assert runs.attrs["driver"] == "each case alone"
