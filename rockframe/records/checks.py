@@ -72,7 +72,7 @@ def check_requested_time_step(
     if requested is not None and not math.isclose(requested, time_step, rel_tol=_ROUNDING):
         raise source.refuse(
             found=f"a time step of {time_step!r} s",
-            expected=f"the {requested!r} s asked for by the argument time_step",
+            expected=f"the {requested!r} s given by the argument time_step",
             line=line,
         )
 

@@ -263,13 +263,13 @@ def choose_component(
     upwards = _find_component(source, request.vertical, components)
     if chosen.orientation.vertical is not None or chosen is upwards:
         raise source.refuse(
-            found=f"the component {chosen.label}, asked for as the horizontal one",
+            found=f"the component {chosen.label}, requested as the horizontal one",
             expected="a horizontal component first, then the vertical one",
             line=chosen.line,
         )
     if upwards.orientation.vertical is None:
         raise source.refuse(
-            found=f"the component {upwards.label}, asked for as the vertical one",
+            found=f"the component {upwards.label}, requested as the vertical one",
             expected="a vertical component",
             line=upwards.line,
         )

@@ -280,7 +280,7 @@ def record_from_counts(
     """
     if request.unit is not None and request.unit_name is not None:
         described: Metadata = {**metadata, "unit_as_read": request.unit_name}
-        history = (f"the samples taken as accelerations in {request.unit_name}, as asked for",)
+        history = (f"the samples taken as accelerations in {request.unit_name}, as requested",)
         return Record(time_step, values, request.unit, described, history)
     if response is None:
         found, expected = missing

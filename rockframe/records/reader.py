@@ -441,7 +441,7 @@ def choose_unit(
             where = source.path if line is None else f"{source.path}, line {line}"
             warnings.append(
                 f"{where}: the unit of the file is {name!r}, but "
-                f"unit={request.unit_name!r} was asked for and is used"
+                f"unit={request.unit_name!r} was requested and is used"
             )
         return request.unit, request.unit_name, warnings
     if name is None:

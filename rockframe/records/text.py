@@ -228,7 +228,7 @@ def _first_sample(source: Source, request: Request, table: Table) -> tuple[int, 
     if looks_like_step(table):
         raise source.refuse(
             found=f"{number} above the samples, which looks like a time step",
-            expected=f"the {requested!r} s asked for by the argument time_step, or no such line",
+            expected=f"the {requested!r} s given by the argument time_step, or no such line",
             line=line,
         )
     return 0, []

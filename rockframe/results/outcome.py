@@ -258,7 +258,7 @@ def overturned_from_status(status: AnyArray) -> Array:
 
 _STOP_REASONS = {
     Status.STEP_LIMIT: "the limit of steps was reached",
-    Status.STEP_TOO_SMALL: "no step was small enough for the accuracy asked for",
+    Status.STEP_TOO_SMALL: "no step was small enough for the requested accuracy",
     Status.CHATTER: "contact changes followed one another without end",
 }
 

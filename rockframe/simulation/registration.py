@@ -178,8 +178,8 @@ def _scene_faults(kind: type[OwnScene]) -> list[str]:
         faults.append(f"{kind.__name__} has no Block among its parts, of which the response is")
     if not set(made_of) - set(BUILTIN_SLOTS):
         faults.append(
-            f"{kind.__name__} is made of rockframe's own parts alone, and so could not be told "
-            "from its scenes; add a part of your own"
+            f"{kind.__name__} is made of rockframe's own parts alone, like a built-in scene; "
+            "add a part of your own"
         )
     twin = scene_of_same_parts(kind)
     if twin is not None:

@@ -67,7 +67,7 @@ class SweepRounds:
     @property
     def advice(self) -> str:
         """What the message about an interrupt says of the store, if there is one."""
-        return "; the same call goes on, as it has a store" if self.store else ""
+        return "; the same call continues, as it has a store" if self.store else ""
 
     def sweep(
         self,

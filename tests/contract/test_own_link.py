@@ -194,7 +194,7 @@ def test_error_in_a_run_names_the_failing_method():
         with pytest.raises(ComponentError, match=r"Spring\.force raised ValueError: .*") as error:
             system.simulate(PULSE)
         assert error.traceback[-1].name == "fail"  # where a user finds the fault
-        with pytest.warns(SolverWarning, match=r"it is said: Spring\.force raised ValueError: "):
+        with pytest.warns(SolverWarning, match=r"of them: Spring\.force raised ValueError: "):
             rf.sweep(system, PULSE, scale=[0.5, 1.0])
 
 

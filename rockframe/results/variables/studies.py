@@ -58,7 +58,7 @@ SWEEP: Final = (
     *rows_over((MOTION,), **{MOTION: ("ground motion", str)}),
     *rows_over(
         (),
-        message=("what is said of the case, none if nothing", str),
+        message=("message about the case, none if there is none", str),
         repeated=(
             "whether the case was run again with adaptive steps, its verdict at fixed steps being "
             "in doubt",

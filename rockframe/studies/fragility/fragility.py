@@ -320,8 +320,8 @@ def _read_states(runs: xr.Dataset, limits: Iterable[object] | None) -> tuple[Lim
     missing = [state.name for state in states if state.name not in names]
     if missing:
         msg = (
-            f"{_OWNER}: the dynamic analysis was not asked for {', '.join(missing)}, which its own "
-            f"limits must name; it has {', '.join(names)}"
+            f"{_OWNER}: the dynamic analysis has no limit state {', '.join(missing)}: name it "
+            f"among the limits of the analysis, which has {', '.join(names)}"
         )
         raise ComponentError(msg)
     return states

@@ -146,7 +146,7 @@ def run_cases(
             system, messages, plan = cases.plan(case)
             response = compute_response(system, plan)
             if (fault := faults.get(case)) is not None:  # that it alone does not have
-                text = f"its run beside others failed ({type(fault).__name__}: {fault})"
+                text = f"its run in lanes failed ({type(fault).__name__}: {fault})"
                 messages = [*messages, f"{text}, and it ran alone: {PLEASE_REPORT}"]
             yield Finished(case, system, response.trajectory, messages, response)
         except Exception as problem:  # any error affects only this case

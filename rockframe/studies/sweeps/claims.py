@@ -48,7 +48,7 @@ class Claims:
             self._folder.mkdir(exist_ok=True)
             return self._make(number, path)
         except OSError as problem:
-            msg = f"{path} cannot be written: {problem}; the same call goes on from what is kept"
+            msg = f"{path} cannot be written: {problem}; the same call continues from what is kept"
             raise StudyError(msg) from problem
 
     def _make(self, number: int, path: Path) -> bool:

@@ -166,7 +166,7 @@ class Store:
             differs = difference(head["study"], json.loads(json.dumps(study.to_dict())))
             msg = (
                 f"{path}: found another study, which differs in {', '.join(differs)}; expected "
-                "the one that is asked for: give another folder; to extend this study by motions "
+                "the requested one: give another folder; to extend this study by motions "
                 f"or by values along its axes, give known={str(path)!r} too"
             )
             raise StudyError(msg)
@@ -223,8 +223,8 @@ class Store:
             write_arrays(self._file(chunk), self._described(chunk) | {"texts": rows.texts}, arrays)
         except OSError as problem:
             msg = (
-                f"{self._file(chunk)} cannot be written: {problem}; what was kept before is "
-                "whole, and the same call goes on from there"
+                f"{self._file(chunk)} cannot be written: {problem}; all chunks before it are "
+                "stored, and the same call continues from there"
             )
             raise StudyError(msg) from problem
 

@@ -146,7 +146,7 @@ def warn_of_missing_results(dataset: xr.Dataset, histories: Iterable[str]) -> No
     ):
         if which.any():
             text, those = _most_frequent(message[which].tolist())
-            reason = "" if text == NONE else f"; of {those} of them it is said: {text}"
+            reason = "" if text == NONE else f"; message of {those} of them: {text}"
             count = f"{int(which.sum())} of {len(status)} cases"
             warn(f"{OWNER}: {count} {words} (status, message){reason}", kind)
     absent = [name for name in histories if name not in dataset]

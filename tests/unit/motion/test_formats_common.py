@@ -86,14 +86,14 @@ def test_missing_component_is_refused(sample, tmp_path):
 def test_contradicting_time_step_argument_is_refused(sample, tmp_path):
     path = sample.write(tmp_path)
     GroundMotion.read(path, component=sample.component, time_step=f"{sample.time_step} s")
-    with pytest.raises(RecordError, match=r"expected the 0\.5 s asked for"):
+    with pytest.raises(RecordError, match=r"expected the 0\.5 s given by"):
         GroundMotion.read(path, component=sample.component, time_step="0.5 s")
 
 
 def test_unit_argument_overrides_file_unit_with_warning(sample, tmp_path):
     path = sample.write(tmp_path)
     own = GroundMotion.read(path, component=sample.component)
-    words = r"(, line \d+)?: the unit of the file is '.*', but unit='mm/s\^2' was asked for"
+    words = r"(, line \d+)?: the unit of the file is '.*', but unit='mm/s\^2' was requested"
     if sample.format == "geonet":
         assert GroundMotion.read(path, component=sample.component, unit="mm/s^2") == own
         return
@@ -107,7 +107,7 @@ def test_unit_argument_overrides_file_unit_with_warning(sample, tmp_path):
     assert ratios[0] > 5.0
 
 
-# shares of a file that hold all of the component that is asked for
+# shares of a file that contain the whole requested component
 WHOLE = {
     "cosmos": (0.5, 0.95), "csmip1": (0.8, 0.95), "csmip2": (0.95,), "usc": (0.95,),
     "usc no unit": (0.95,),

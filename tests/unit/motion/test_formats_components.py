@@ -180,9 +180,9 @@ class TestPairs:
     @pytest.mark.parametrize(
         ("component", "words"),
         [
-            (("N", "E"), "'E' .* asked for as the vertical one; expected a vertical"),
-            (("U", "N"), "'U' .* asked for as the horizontal one"),
-            (("U", "U"), "asked for as the horizontal one"),
+            (("N", "E"), "'E' .* requested as the vertical one; expected a vertical"),
+            (("U", "N"), "'U' .* requested as the horizontal one"),
+            (("U", "U"), "requested as the horizontal one"),
             (("N", "T"), "expected the component 'T'"),
         ],
     )

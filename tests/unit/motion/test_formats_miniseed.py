@@ -121,7 +121,7 @@ class TestWithObspy:
         assert motion.si.horizontal.samples.tolist() == pytest.approx(
             (COUNTS // 100 * 0.01).tolist()
         )
-        assert "as asked for" in motion.history[1]
+        assert "as requested" in motion.history[1]
 
     def test_unit_and_response_exclude_each_other(self, write):
         response = write(station_xml(), "r.xml")

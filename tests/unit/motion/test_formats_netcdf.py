@@ -70,7 +70,7 @@ def test_unit_and_time_step_must_match_stored_ones(tmp_path):
     assert GroundMotion.read(path, unit="m/s^2", time_step="5.1 ms") == motion
     with pytest.raises(RecordError, match=r"in m/s\^2; expected accelerations in the unit 'g'"):
         GroundMotion.read(path, unit="g")
-    with pytest.raises(RecordError, match="asked for by the argument time_step"):
+    with pytest.raises(RecordError, match="given by the argument time_step"):
         GroundMotion.read(path, time_step="5 ms")
 
 

@@ -201,7 +201,7 @@ def test_absurd_time_step(write):
 
 def test_time_step_argument_must_agree_with_the_times(write):
     path = write(table(), "r.csv")
-    with pytest.raises(RecordError, match=r"expected the 0\.01 s asked for"):
+    with pytest.raises(RecordError, match=r"expected the 0\.01 s given by"):
         GroundMotion.read(path, unit="g", time_step="0.01 s")
 
 

@@ -81,7 +81,7 @@ class TestStatedSteps:
     def test_time_step_of_header_is_used(self, write, head, step):
         assert read(write, column(head)).si.time_step == step
         assert read(write, column(head), time_step=f"{step!r} s").si.time_step == step
-        with pytest.raises(RecordError, match=r"line \d: .*expected the 0\.03 s asked for"):
+        with pytest.raises(RecordError, match=r"line \d: .*expected the 0\.03 s given by"):
             read(write, column(head), time_step="0.03 s")
 
     @pytest.mark.parametrize("head", ["# dt = 10/2000 s\n", "# sampling rate = 0.25 kHz\n"])
@@ -177,7 +177,7 @@ class TestFirstLines:
         motion = read(write, f"{head.format(n=COUNT)}{body}\n", unit="g")
         assert motion.si.horizontal.samples.tolist() == (VALUES * G).tolist()
         assert motion.si.time_step == 0.01
-        with pytest.raises(RecordError, match=r"expected the 0\.02 s asked for"):
+        with pytest.raises(RecordError, match=r"expected the 0\.02 s given by"):
             read(write, f"{head.format(n=COUNT)}{body}\n", unit="g", time_step="0.02 s")
 
     def test_wrong_leading_count_warns_or_is_refused(self, write):

@@ -70,7 +70,7 @@ def test_chattering_block_has_a_blended_contact_strip():
 LONGEST = (
     "Did not overturn: peak rotation 0.05804 rad, 26.5 % of the overturning angle; 267 impacts, "
     "no uplift from the pads, 0.123 s in flight. Not finished: stopped at 12.3456 s, because no "
-    "step was small enough for the accuracy asked for."
+    "step was small enough for the requested accuracy."
 )
 
 

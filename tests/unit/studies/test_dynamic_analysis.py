@@ -196,7 +196,7 @@ def test_interrupted_analysis_warns_and_resumes(tmp_path, monkeypatch, after, ki
 
     with monkeypatch.context() as patch:
         patch.setattr(of_lines, "run_study", cut)
-        with pytest.warns(SolverWarning, match="interrupted; brackets are wider.*goes on"):
+        with pytest.warns(SolverWarning, match="interrupted; brackets are wider.*continues"):
             found = rf.incremental_dynamic_analysis(SYSTEM, motions(), **options)
         rounds = itertools.count()
         with pytest.warns(SolverWarning, match="interrupted; brackets"):

@@ -255,7 +255,7 @@ def test_interrupted_subset_simulation_warns_and_resumes(tmp_path, monkeypatch):
 
     with monkeypatch.context() as keys:
         keys.setattr(lines, "run_study", interrupted)
-        with pytest.warns(SolverWarning, match="interrupted at level 3; the same call goes on"):
+        with pytest.warns(SolverWarning, match="interrupted at level 3; the same call continues"):
             part = simulated(cases=200, store=tmp_path / "study")
         assert part.verdict.endswith("; interrupted.")
         assert np.isnan(part.exceedance_probability)

@@ -78,7 +78,7 @@ def test_messages_of_many_cases_are_merged(tmp_path):
     def swept(**how):
         return rf.sweep(system, PULSE, scale=scales, free_vibration="5 s", **how)
 
-    with pytest.warns(ModelWarning, match=r"of \d\d of them it is said: .* 0\.1"):
+    with pytest.warns(ModelWarning, match=r"message of \d\d of them: .* 0\.1"):
         many = swept()
     assert len(set(many.message.values.ravel())) <= 1 + MAX_SIMILAR_TEXTS
     few = rf.sweep(system, PULSE, scale=scales[:3], free_vibration="5 s")
@@ -99,9 +99,9 @@ def test_messages_of_many_cases_are_merged(tmp_path):
 
 def test_warning_quotes_the_most_frequent_caution():
     for texts, caution in (
-        (["none", "slides beyond", "soft", "soft", "none"], "3 .*; of 2 of them it is said: soft"),
+        (["none", "slides beyond", "soft", "soft", "none"], "3 .*; message of 2 of them: soft"),
         (["soft", "slides 3 m", "slides 1 m", "none", "soft 1"], "4 .* of 2 .* slides 1 to 3 m$"),
-        (["soft", "slides 3 m", "none", "none", "none"], "2 of 5 .* of 1 .* said: soft"),
+        (["soft", "slides 3 m", "none", "none", "none"], "2 of 5 .* message of 1 of them: soft"),
     ):
         values = {"status": np.zeros(5), "peak_rotation": np.zeros(5), "message": np.array(texts)}
         runs = xr.Dataset({name: ("case", some) for name, some in values.items()})
