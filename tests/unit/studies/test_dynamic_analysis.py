@@ -233,7 +233,7 @@ def test_fragility_can_be_fitted_to_capacities(analysis):
     assert found.sel(limit_state="uplift").median_intensity.item() == pytest.approx(
         9.80665 / 4.0, rel=1e-3
     )
-    with pytest.raises(ComponentError, match=r"was not .* limits must name; it has uplift, "):
+    with pytest.raises(ComponentError, match=r"has no limit state .* which has uplift, "):
         rf.fragility(analysis, limits=[0.7])
 
 
