@@ -10,7 +10,7 @@ from importlib import import_module
 from typing import Any, Final
 
 from rockframe.compiled.language import KERNELS, is_method
-from rockframe.compiled.passes import PlainPasses, makes_only_numbers, raises_exceptions
+from rockframe.compiled.passes import PlainPasses, makes_only_numbers
 
 # numba's own annotations are partial
 numba: Final[Any] = import_module("numba")
@@ -51,10 +51,6 @@ class _Compiled(numba.types.Dispatcher):
 
     def get_call_type(self, context: Any, arguments: Any, keywords: Any) -> Any:
         """Return the types of a call; a constant argument has the type of its kind of number."""
-        function = self.dispatcher.py_func
-        if raises_exceptions(function):
-            msg = f"{function.__qualname__} raises an exception"
-            raise numba.TypingError(msg)
         alike = [numba.types.unliteral(each) for each in arguments]
         named = {name: numba.types.unliteral(each) for name, each in keywords.items()}
         return super().get_call_type(context, alike, named)

@@ -30,6 +30,7 @@ from rockframe.compiled.calls import (
 )
 from rockframe.compiled.language import KERNELS, Integers, ReadOnlyMatrix, Vector, view_from
 from rockframe.compiled.linking import late_linking
+from rockframe.compiled.passes import raises_exceptions
 
 VECTOR: Final = BufferType(numba.float64, 1, True)
 """Numba's type of a vector in compiled code."""
@@ -215,6 +216,11 @@ class Job:
                 return self._compiled(keep=False)
 
     def _compiled(self, *, keep: bool) -> Any:
+        # a bound function would print its exceptions, and go on
+        for called in self.calls if self.is_bound else ():
+            if raises_exceptions(called):
+                msg = f"{called.__qualname__} raises an exception"
+                raise numba.TypingError(msg)
         text, scope, signature = self._written
         name = self.file.stem if self.file else f"{self.function.__name__}_{len(sys.modules)}"
         module = ModuleType(name)

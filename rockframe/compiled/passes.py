@@ -40,7 +40,7 @@ def makes_only_numbers(function: Any) -> bool:
 
 
 def raises_exceptions(function: Any) -> bool:
-    """Whether a function has statements that raise exceptions; machine code would go on."""
+    """Whether a function has statements that raise exceptions."""
     return any(each.opname == "RAISE_VARARGS" for each in get_instructions(function))
 
 

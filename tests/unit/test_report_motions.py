@@ -130,7 +130,7 @@ def test_records_of_a_reopened_study_can_be_passed_to_the_report(suite, tmp_path
     runs = rf.sweep(BLOCK, motions=suite, gravity=gravity, accuracy="fast", store=tmp_path / "kept")
     runs.to_netcdf(tmp_path / "runs.nc")
     forgotten = {}
-    monkeypatch.setattr("rockframe.studies.sweeps.case._studies", forgotten)
+    monkeypatch.setattr("rockframe.studies.sweeps.study._cache", forgotten)
     with xr.open_dataset(tmp_path / "runs.nc") as read:
         read.load()
     path = tmp_path / "r.html"

@@ -233,7 +233,7 @@ def test_fragility_of_runs_without_records_suggests_the_store(run_command, folde
     words = 'scene = "scene.toml"\nmotions = ["records"]\nstore = "kept"\n[axes]\nscale = [1, 2]\n'
     (folder / "study.toml").write_text(words)
     assert run_command("study", "study.toml", "-o", "runs.nc")[0] == 0
-    monkeypatch.setattr("rockframe.studies.sweeps.case._studies", {})
+    monkeypatch.setattr("rockframe.studies.sweeps.study._cache", {})
     code, _, err = run_command("fragility", "runs.nc")
     assert code == 2
     assert "runs.nc: the record " in err

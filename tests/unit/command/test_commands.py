@@ -287,7 +287,7 @@ def test_study_report_accepts_records_target_and_checks(run_command, folder, mon
         '[axes]\nscale = [1.0, 2.0]\n[sweep]\naccuracy = "fast"\n'
     )
     assert run_command("study", "study.toml", "-o", "runs.nc")[0] == 0
-    monkeypatch.setattr("rockframe.studies.sweeps.case._studies", {})  # as in another process
+    monkeypatch.setattr("rockframe.studies.sweeps.study._cache", {})  # as in another process
     spectrum = ["--target", "eurocode_8", "ground_acceleration=0.2 g_0", "ground_type=B"]
     check = ["--check", "circolare_2019", "confidence_factor=1.2"]
     component = ["--check", "asce_7_22", "spectral_acceleration=1"]

@@ -5,7 +5,7 @@ import pytest
 import rockframe as rf
 from rockframe.errors import SchemaError, StudyError
 from rockframe.plot._checks import system_of_run
-from rockframe.studies.sweeps import case as of_cases
+from rockframe.studies.sweeps import study as studies_at_hand
 
 BLOCK = rf.Block(width="0.8 m", height="3.2 m", mass="5.5 t")
 PULSE = rf.GroundMotion.sine_pulse("5 m/s^2", "1 Hz")
@@ -154,7 +154,7 @@ def test_case_of_an_unknown_scene_function_is_refused_naming_the_caller(
     owner, tmp_path, case_of_function, monkeypatch
 ):
     NEEDS_SYSTEM[owner](case_of_function, tmp_path)
-    monkeypatch.setattr(of_cases, "_studies", {})  # as in another process
+    monkeypatch.setattr(studies_at_hand, "_cache", {})  # as in another process
     hint = "give it as scene=" if owner == "case" else r"give rf\.case\(dataset, scene=\.\.\.\)"
     with pytest.raises(StudyError, match=f"^{owner}: the scene was the function .*tower; {hint}"):
         NEEDS_SYSTEM[owner](case_of_function, tmp_path)
@@ -188,7 +188,7 @@ def test_report_accepts_cases_and_derived_sweeps(overturned_case, tmp_path):
 def test_report_without_motion_describes_only_its_case(tmp_path):
     record = rf.GroundMotion.from_arrays(([0.0, 5.0, 5.0, -5.0, 0.0], "m/s^2"), "0.2 s", name="r")
     runs = rf.sweep(rf.System(BLOCK), record, width=["0.8 m", "1.2 m"], scale=[0.1, 1.0], **QUIET)
-    of_cases._studies.clear()  # as in another process
+    studies_at_hand._cache.clear()  # as in another process
     case, path = runs.isel(width=1, scale=0, motion=0), tmp_path / "report.html"
     text = rf.report(case, path).read_text("utf-8")
     assert "Of 1 of the 4 cases of the sweep 0 overturned and 1 did not" in text

@@ -358,9 +358,9 @@ def test_fragility_of_a_reopened_sweep_requires_its_records(tmp_path):
     runs = rf.sweep(SYSTEM, records, scale=[0.5, 1.0, 3.0, 9.0], progress=False)
     found = rf.fragility(runs, limits=())
     runs.to_netcdf(tmp_path / "runs.nc")
-    from rockframe.studies.sweeps import case
+    from rockframe.studies.sweeps import study
 
-    case._studies.clear()
+    study._cache.clear()
     again = xr.open_dataset(tmp_path / "runs.nc").load()
     with pytest.raises(StudyError, match=r"^fragility: the record .* must be given, as motions="):
         rf.fragility(again)

@@ -15,7 +15,7 @@ from stored_sweep import assert_identical
 
 import rockframe as rf
 from rockframe.errors import ComponentError, StudyError
-from rockframe.studies.sweeps import case as of_cases
+from rockframe.studies.sweeps import study as studies_at_hand
 from rockframe.studies.sweeps.store import read_arrays, write_arrays
 
 pytestmark = [
@@ -134,7 +134,7 @@ def test_reopened_study_and_its_cases_equal_those_in_memory(run, tmp_path, monke
     plain = run(accuracy="fast")
     run(accuracy="fast", store=tmp_path / "study")
     assert_identical(rf.open_study(tmp_path / "study"), plain)
-    monkeypatch.setattr(of_cases, "_studies", type(of_cases._studies)())
+    monkeypatch.setattr(studies_at_hand, "_cache", type(studies_at_hand._cache)())
     for place in np.ndindex(*plain.status.shape):
         one = plain.isel(dict(zip(plain.status.dims, place, strict=True)))
         labels = {name: one[name].item() for name in plain.status.dims}

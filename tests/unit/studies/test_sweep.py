@@ -33,8 +33,8 @@ from rockframe.results.variables.runs import RunStatus
 from rockframe.simulation import run as of_a_run
 from rockframe.simulation.soundness import STILL_MOVING
 from rockframe.solve.workspace import Status
-from rockframe.studies.sweeps import case as of_cases
 from rockframe.studies.sweeps import labelling
+from rockframe.studies.sweeps import study as studies_at_hand
 from rockframe.studies.sweeps.axes import SYSTEM_AXES, Changes
 
 BLOCK = rf.Block(width="0.8 m", height="3.6 m", mass="4 t")
@@ -332,7 +332,8 @@ def test_case_is_found_by_labels_motions_and_scene(tmp_path, monkeypatch):
     record = rf.GroundMotion.read(record_path("ElCentro1940_Peknold.AT2")).window("0 s", "4 s")
     runs = rf.sweep(SYSTEM, [PULSE, record], scale=[1.0, 2.0], **FAST)
     runs.to_netcdf(tmp_path / "runs.nc")
-    monkeypatch.setattr(of_cases, "_studies", type(of_cases._studies)())  # as in another process
+    # as in another process
+    monkeypatch.setattr(studies_at_hand, "_cache", type(studies_at_hand._cache)())
     with xr.open_dataset(tmp_path / "runs.nc") as again:
         assert (
             rf.case(again, scale=2.0, motion=0).simulate().peak_rotation == runs.peak_rotation[1, 0]
@@ -345,7 +346,7 @@ def test_case_is_found_by_labels_motions_and_scene(tmp_path, monkeypatch):
         assert found.simulate().peak_rotation == runs.peak_rotation[1, 1]
         assert rf.System.from_dataset(again) == SYSTEM
     made = rf.sweep(on_pads, PULSE, frequency_ratio=[10, 20], height=["3.6 m"], **FAST)
-    of_cases._studies.clear()
+    studies_at_hand._cache.clear()
     with pytest.raises(StudyError, match="the function on_pads; give it as scene="):
         rf.case(made, frequency_ratio=10)
     alone = rf.case(made, frequency_ratio=10, scene=on_pads)
@@ -362,7 +363,7 @@ def test_unknown_history_of_a_sweep_warns():
 
 
 def test_analysis_rounds_do_not_evict_records_of_sweeps(monkeypatch):
-    monkeypatch.setattr(of_cases, "_CACHE_SIZE", 2)
+    monkeypatch.setattr(studies_at_hand, "_CACHE_SIZE", 2)
     pulse = np.sin(np.linspace(0.0, 2.0 * np.pi, 51))
     record, rigid = rf.GroundMotion.from_arrays((pulse, "m/s^2"), "0.02 s"), rf.System(BLOCK)
     runs = rf.sweep(rigid, record, **FAST)

@@ -10,8 +10,8 @@ from stored_sweep import BLOCK, PULSE, RECORD, SCALES, as_bytes, run_sweep, stor
 import rockframe as rf
 from rockframe.errors import ModelWarning, SolverWarning, StudyError
 from rockframe.results.variables.runs import RunStatus
-from rockframe.studies.sweeps import case as of_cases
 from rockframe.studies.sweeps import store
+from rockframe.studies.sweeps import study as studies_at_hand
 from rockframe.studies.sweeps.store import read_arrays, write_arrays, write_atomically
 from rockframe.version import __version__
 
@@ -73,7 +73,7 @@ def test_it_can_be_read_while_it_runs(tmp_path):
 
 def test_case_is_restored_from_the_folder_alone(complete, monkeypatch):
     folder, runs = complete
-    monkeypatch.setattr(of_cases, "_studies", type(of_cases._studies)())
+    monkeypatch.setattr(studies_at_hand, "_cache", type(studies_at_hand._cache)())
     for place in (folder, runs):  # a sweep knows its folder
         found = rf.case(place, scale=SCALES[17], height="3.6 m", motion="noise")
         assert found.motion.sha256 == RECORD.scaled(SCALES[17]).sha256
@@ -105,7 +105,7 @@ def test_motions_with_a_vertical_component_are_kept_however_they_were_made(tmp_p
     (folder / "chunk-000001.arrays").unlink()
     assert as_bytes(run(store=folder)) == as_bytes(plain)
     assert as_bytes(rf.open_study(folder)) == as_bytes(plain)
-    monkeypatch.setattr(of_cases, "_studies", type(of_cases._studies)())
+    monkeypatch.setattr(studies_at_hand, "_cache", type(studies_at_hand._cache)())
     for name, motion in motions.items():
         found = rf.case(folder, scale=2.0, motion=name)
         assert found.motion.sha256 == motion.scaled(2.0).sha256
