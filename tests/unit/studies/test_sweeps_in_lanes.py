@@ -295,7 +295,7 @@ def test_failure_in_preparing_lanes_warns_and_falls_back(monkeypatch):
     monkeypatch.setattr(study, "MIN_CASES_IN_LANES", 1)
     monkeypatch.setattr(study, "COMPILING_SHARE", math.inf)
     monkeypatch.setattr(in_lanes, "run_start", fails)
-    message = r"beside others failed \(ZeroDivisionError: no such lane\).*error in rockframe"
+    message = r"in lanes failed \(ZeroDivisionError: no such lane\).*error in rockframe"
     with pytest.warns(ModelWarning, match=message):
         runs = swept()
     assert runs.attrs["driver"] == "each case alone"
