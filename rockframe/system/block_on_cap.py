@@ -22,8 +22,8 @@ from rockframe.system.options import restraint_words
 from rockframe.system.setting import Setting, SlipRange, Words, chain_slips, sliding_words
 from rockframe.system.single_body import SingleBodySetting
 from rockframe.system.sliding_stack import overhang_caution
-from rockframe.system.statics import SmallMotion, Statics, static_values
-from rockframe.system.support import BaseWords, StandingBodies, Support
+from rockframe.system.statics import SmallMotion, StandingBodies, Statics, static_values
+from rockframe.system.support import BaseWords, Support
 
 if TYPE_CHECKING:
     from rockframe.dynamics.coupled.model import StackRest

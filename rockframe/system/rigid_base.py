@@ -8,8 +8,8 @@ from rockframe.dynamics.body_statics import Pose
 from rockframe.dynamics.equilibrium import ChainEquilibrium, EquilibriumPath
 from rockframe.dynamics.link_statics import LinkForce, links_at_rest, links_of_rocking_bodies
 from rockframe.system.stacked_bodies import StackedBodies
-from rockframe.system.statics import Statics, work_against
-from rockframe.system.support import REACTIONS, StandingBodies
+from rockframe.system.statics import StandingBodies, Statics, work_against
+from rockframe.system.support import REACTIONS
 
 
 class RigidBaseLoad(NamedTuple):

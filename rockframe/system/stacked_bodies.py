@@ -15,7 +15,8 @@ from rockframe.system.bodies import BaseLoad, SupportedBody, combine_masses
 from rockframe.system.compatibility import BaseFriction
 from rockframe.system.links import PlacedLink, base_of
 from rockframe.system.setting import Setting
-from rockframe.system.support import RigidBase, StandingBodies, Support
+from rockframe.system.statics import StandingBodies
+from rockframe.system.support import RigidBase, Support
 
 
 @dataclass(frozen=True)

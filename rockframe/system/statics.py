@@ -1,14 +1,18 @@
-"""Quasi-static states of bodies held at rotations, the work to reach them, and vibration modes."""
+"""Statics of bodies: at rest, held at rotations, the work to reach these; vibration modes."""
 
 import itertools
 import math
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
+from functools import cached_property
 from typing import Final, TypeAlias
 
 import numpy as np
 from numpy.typing import NDArray
 
+from rockframe.dynamics.base_numbers import BaseNumbers
+from rockframe.dynamics.body_statics import Pose
+from rockframe.dynamics.statics import StandingChain
 from rockframe.errors import SolverError
 from rockframe.signals.arrays import Array
 
@@ -59,6 +63,112 @@ def required_states(rotations: Sequence[float], states: Sequence[Statics | None]
     return found
 
 
+@dataclass(frozen=True)
+class SmallMotion:
+    """Linear equations of small motion M q'' + C q' + K q = 0."""
+
+    coordinates: tuple[str, ...]  # names of the coordinates
+    mass: Array  # M, C and K in SI units
+    damping: Array
+    stiffness: Array
+    # for a stack, the bodies whose coordinates follow one another, counted from 1 at the top
+    bodies: tuple[int, ...] = field(default=(), kw_only=True)
+
+
+LINEAR_ROTATION: Final = 2.0**-20
+"""Rotation, over the one that the settlement allows, below which moments are taken as linear in it:
+the difference of the forces at both ends loses too many digits there."""
+SLOPE_ROTATION: Final = 2.0**-6
+"""Rotation, over the same, at which the slope of the moments is found."""
+
+
+@dataclass(frozen=True)
+class StandingBodies:
+    """Statics of stacked bodies, in SI units."""
+
+    chain: StandingChain  # the bodies on their bases, per unit of the reference mass
+    mass: float  # reference mass, that of the highest body [kg]
+    bases: tuple[BaseNumbers, ...]  # bases of the bodies, from the top down
+
+    @cached_property
+    def rest(self) -> list[Pose] | None:
+        """Equilibrium of the bodies under their weight; None if there is none."""
+        return self.chain.rest()
+
+    @cached_property
+    def upright(self) -> list[Pose]:
+        """Equilibrium with all bodies held upright."""
+        return self.chain.poses_at([0.0] * len(self.bases)) or []
+
+    def held(self, rotations: Sequence[float]) -> list[Statics | None]:
+        """Return states with the highest body held at rotations [rad]; None where none exists."""
+        curve = self.chain.curve(rotations)
+        found = [None if poses is None else self.statics_of(poses) for poses in curve]
+        least = (
+            LINEAR_ROTATION * self.chain.bodies[0].allowed_rotation
+            if self.chain.rests_upright
+            else 0.0
+        )
+        for i, (rotation, state) in enumerate(zip(rotations, found, strict=True)):
+            if state is not None and abs(rotation) < least:
+                found[i] = self._near_upright(rotation, state)
+        return found
+
+    def _near_upright(self, rotation: float, state: Statics) -> Statics:
+        """Return a state with moments free of cancellation, by their slope, to fourth order."""
+        step = SLOPE_ROTATION * self.chain.bodies[0].allowed_rotation
+        near, far = required_states((step, 2.0 * step), self.held((step, 2.0 * step)))
+        share = rotation / (6.0 * step)
+        return replace(
+            state,
+            base_moment=share * (8.0 * near.base_moment - far.base_moment),
+            restoring_moment=share * (8.0 * near.restoring_moment - far.restoring_moment),
+        )
+
+    def statics_of(self, poses: list[Pose]) -> Statics:
+        """Return the quasi-static state of bodies from their equilibrium."""
+        (part, *_), lowest = self.chain.bodies[0], poses[-1]
+        body = self.chain.bodies[-1].part.body
+        attitude = body.attitude(lowest.state.rotation)
+        arm = body.height * attitude.sine + 0.5 * (body.left - body.right) * attitude.cosine
+        held = [part.base.is_held(poses[0].mode.contact, left) for left in (True, False)]
+        bears = "full" if all(held) else "left" if held[0] else "right"
+        return Statics(
+            vertical_displacement=self.chain.rise(poses),
+            base_moment=self.mass * (lowest.normal_force * arm - lowest.force.moment),
+            restoring_moment=-self.mass * self.chain.moments(poses)[0],
+            contact_state=bears if poses[0].normal_force > 0.0 else "flight",
+            reactions=self.reactions(poses),
+        )
+
+    def reactions(self, poses: list[Pose]) -> dict[str, float]:
+        """Return the columns of the bases in an equilibrium, by the names of the schema."""
+        found = dict[str, float]()
+        for standing, pose, numbers in zip(self.chain.bodies, poses, self.bases, strict=True):
+            if standing.corner:
+                continue
+            base = standing.part.base
+            shown = base.observed(pose.mode.contact, pose.line, pose.own)
+            for column, value in zip(numbers.columns, shown, strict=True):
+                found[column.name] = (self.mass if column.per_mass else 1.0) * value
+        if len(poses) > 1:
+            found["cap_rotation"] = poses[-1].state.rotation
+        return found
+
+    def small_motion(self, poses: list[Pose]) -> tuple[Array, Array, Array]:
+        """Return mass, damping and stiffness matrix about rest, for rotation and height of each."""
+        from rockframe.dynamics.linearization import linearized_chain
+
+        mass, damping, stiffness = linearized_chain(self.chain, poses)
+        return self.mass * mass, self.mass * damping, self.mass * stiffness
+
+    def motion_of_single_body(self, poses: list[Pose]) -> SmallMotion:
+        """Return the equations of small motion about rest of a body alone on its base."""
+        # height before rotation
+        matrices = (one[::-1, ::-1] for one in self.small_motion(poses))
+        return SmallMotion(("vertical_displacement", "rotation"), *matrices)
+
+
 _POINTS, _WEIGHTS = np.polynomial.legendre.leggauss(12)
 _GAUSS_RULE: Final[list[tuple[float, float]]] = [
     (0.5 + 0.5 * float(point), 0.5 * float(weight))
@@ -85,18 +195,6 @@ def work_against(moments: RestoringMoments, end: float) -> float:
         weight * max(end * moment, 0.0)
         for (_, weight), moment in zip(_GAUSS_RULE, values, strict=True)
     )
-
-
-@dataclass(frozen=True)
-class SmallMotion:
-    """Linear equations of small motion M q'' + C q' + K q = 0."""
-
-    coordinates: tuple[str, ...]  # names of the coordinates
-    mass: Array  # M, C and K in SI units
-    damping: Array
-    stiffness: Array
-    # for a stack, the bodies whose coordinates follow one another, counted from 1 at the top
-    bodies: tuple[int, ...] = field(default=(), kw_only=True)
 
 
 @dataclass(frozen=True)

@@ -6,8 +6,7 @@ and its law is the base in the equations.
 
 import math
 from abc import ABC, abstractmethod
-from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from functools import cached_property
 from typing import ClassVar, Final
 
@@ -16,113 +15,24 @@ from rockframe.components import TwoSpringSupport, WinklerSoil
 from rockframe.components.bases import Separation
 from rockframe.dynamics.base_numbers import BaseNumbers, bed_numbers, pads_numbers, rigid_numbers
 from rockframe.dynamics.body import Body
-from rockframe.dynamics.body_statics import Pose, base_derivatives, standing_body, uplift_rotation
+from rockframe.dynamics.body_statics import base_derivatives, standing_body, uplift_rotation
 from rockframe.dynamics.on_base import BodyOnBase
 from rockframe.dynamics.single_body import eccentricity_of
 from rockframe.dynamics.statics import StandingChain
-from rockframe.signals.arrays import Array
 from rockframe.system.bodies import BaseLoad, Restitutions, base_restitution, restitution_cautions
-from rockframe.system.statics import SmallMotion, Statics, required_states, static_values
+from rockframe.system.statics import (
+    StandingBodies,
+    Statics,
+    required_states,
+    static_values,
+)
 from rockframe.units import angle_words
-
-LINEAR_ROTATION: Final = 2.0**-20
-"""Rotation, over the one that the settlement allows, below which moments are taken as linear in it:
-the difference of the forces at both ends loses too many digits there."""
-SLOPE_ROTATION: Final = 2.0**-6
-"""Rotation, over the same, at which the slope of the moments is found."""
 
 NO_VERTICAL_START: Final = (
     "InitialState: vertical_displacement and vertical_velocity need a base that gives way; on "
     "rigid ground they follow from the rotation"
 )
 REACTIONS: Final[tuple[str, ...]] = ("left_reaction", "right_reaction")
-
-
-@dataclass(frozen=True)
-class StandingBodies:
-    """Statics of stacked bodies, in SI units."""
-
-    chain: StandingChain  # the bodies on their bases, per unit of the reference mass
-    mass: float  # reference mass, that of the highest body [kg]
-    bases: tuple[BaseNumbers, ...]  # bases of the bodies, from the top down
-
-    @cached_property
-    def rest(self) -> list[Pose] | None:
-        """Equilibrium of the bodies under their weight; None if there is none."""
-        return self.chain.rest()
-
-    @cached_property
-    def upright(self) -> list[Pose]:
-        """Equilibrium with all bodies held upright."""
-        return self.chain.poses_at([0.0] * len(self.bases)) or []
-
-    def held(self, rotations: Sequence[float]) -> list[Statics | None]:
-        """Return states with the highest body held at rotations [rad]; None where none exists."""
-        curve = self.chain.curve(rotations)
-        found = [None if poses is None else self.statics_of(poses) for poses in curve]
-        least = (
-            LINEAR_ROTATION * self.chain.bodies[0].allowed_rotation
-            if self.chain.rests_upright
-            else 0.0
-        )
-        for i, (rotation, state) in enumerate(zip(rotations, found, strict=True)):
-            if state is not None and abs(rotation) < least:
-                found[i] = self._near_upright(rotation, state)
-        return found
-
-    def _near_upright(self, rotation: float, state: Statics) -> Statics:
-        """Return a state with moments free of cancellation, by their slope, to fourth order."""
-        step = SLOPE_ROTATION * self.chain.bodies[0].allowed_rotation
-        near, far = required_states((step, 2.0 * step), self.held((step, 2.0 * step)))
-        share = rotation / (6.0 * step)
-        return replace(
-            state,
-            base_moment=share * (8.0 * near.base_moment - far.base_moment),
-            restoring_moment=share * (8.0 * near.restoring_moment - far.restoring_moment),
-        )
-
-    def statics_of(self, poses: list[Pose]) -> Statics:
-        """Return the quasi-static state of bodies from their equilibrium."""
-        (part, *_), lowest = self.chain.bodies[0], poses[-1]
-        body = self.chain.bodies[-1].part.body
-        attitude = body.attitude(lowest.state.rotation)
-        arm = body.height * attitude.sine + 0.5 * (body.left - body.right) * attitude.cosine
-        held = [part.base.is_held(poses[0].mode.contact, left) for left in (True, False)]
-        bears = "full" if all(held) else "left" if held[0] else "right"
-        return Statics(
-            vertical_displacement=self.chain.rise(poses),
-            base_moment=self.mass * (lowest.normal_force * arm - lowest.force.moment),
-            restoring_moment=-self.mass * self.chain.moments(poses)[0],
-            contact_state=bears if poses[0].normal_force > 0.0 else "flight",
-            reactions=self.reactions(poses),
-        )
-
-    def reactions(self, poses: list[Pose]) -> dict[str, float]:
-        """Return the columns of the bases in an equilibrium, by the names of the schema."""
-        found = dict[str, float]()
-        for standing, pose, numbers in zip(self.chain.bodies, poses, self.bases, strict=True):
-            if standing.corner:
-                continue
-            base = standing.part.base
-            shown = base.observed(pose.mode.contact, pose.line, pose.own)
-            for column, value in zip(numbers.columns, shown, strict=True):
-                found[column.name] = (self.mass if column.per_mass else 1.0) * value
-        if len(poses) > 1:
-            found["cap_rotation"] = poses[-1].state.rotation
-        return found
-
-    def small_motion(self, poses: list[Pose]) -> tuple[Array, Array, Array]:
-        """Return mass, damping and stiffness matrix about rest, for rotation and height of each."""
-        from rockframe.dynamics.linearization import linearized_chain
-
-        mass, damping, stiffness = linearized_chain(self.chain, poses)
-        return self.mass * mass, self.mass * damping, self.mass * stiffness
-
-    def motion_of_single_body(self, poses: list[Pose]) -> SmallMotion:
-        """Return the equations of small motion about rest of a body alone on its base."""
-        # height before rotation
-        matrices = (one[::-1, ::-1] for one in self.small_motion(poses))
-        return SmallMotion(("vertical_displacement", "rotation"), *matrices)
 
 
 def uplift_words(radians: float) -> str:
