@@ -198,21 +198,21 @@ def nonunique_motions(
     add_caution(several, lambda i: (
         f"an impact has {int(sets[i])} modes: taken is that which loses the least energy, "
         f"{_contact_words(int(taken[i]), rigid)}; the next is "
-        f"{_contact_words(int(other[i]), rigid)}; of such impacts there are "
-        f"{several.sum()}: {_ONE_OF}"
+        f"{_contact_words(int(other[i]), rigid)}; such impacts: "
+        f"{several.sum()}; {_ONE_OF}"
     ))  # fmt: skip
     add_caution(none, lambda i: (
         "an impact has no mode, and is computed with every closed contact held along itself: "
-        f"{_contact_words(int(taken[i]), rigid)}; of such impacts there are {none.sum()}: {_ONE_OF}"
+        f"{_contact_words(int(taken[i]), rigid)}; such impacts: {none.sum()}; {_ONE_OF}"
     ))  # fmt: skip
     add_caution(unsure, lambda i: (
         f"a slip begins or ends, and there are {int(sets[i]) or 'no'} ways to bear and to slip "
-        f"then: taken is one with {_contact_words(int(taken[i]), rigid)}; of such changes there "
-        f"are {unsure.sum()}: {_ONE_OF}"
+        f"then: taken is one with {_contact_words(int(taken[i]), rigid)}; such changes: "
+        f"{unsure.sum()}; {_ONE_OF}"
     ))  # fmt: skip
     add_caution(held, lambda _: (
-        "a corner is held though it does not press, since it would come back at once if it were "
-        f"let go; this happens {held.sum()} times"
+        "a corner is held though it does not press, since it would return at once if it were "
+        f"released; such events: {held.sum()}"
     ))  # fmt: skip
     counts = {
         "impacts_of_several_modes": int(several.sum()),
