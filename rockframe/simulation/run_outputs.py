@@ -251,7 +251,7 @@ def _user_outputs(
                 lambda own=own, sides=sides, sizes=sizes: checked_results(
                     own.answers(*map(read_only, (everything, *sides))), sizes
                 ),
-                {}, f"what {type(own).__name__} tells of the run", missing,
+                {}, f"the results of {type(own).__name__}", missing,
             )  # fmt: skip
     for one in plan.diagnostics:
         state = _diagnostic_state(values, observed.run.time, observed.ground)

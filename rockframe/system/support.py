@@ -1,4 +1,4 @@
-"""Supports: bases under a given body, such as pads or a bed of soil, and statics on them.
+"""Supports: bases under a given body, such as pads, a bed of soil, or a rigid base.
 
 The numbers of a support follow from its component and from the body on it; its words describe them,
 and its law is the base in the equations.

@@ -316,7 +316,7 @@ class TestRegistration:
                 return answer if answer is None else dict(answer)
 
         rf.register(Wrong)
-        with pytest.warns(SolverWarning, match="what Wrong tells of the run could not be"):
+        with pytest.warns(SolverWarning, match="the results of Wrong could not be"):
             response = rf.System(BLOCK, Wedge(friction=0.26)).simulate(PULSE)
         assert words in response.attrs["cautions"]
         assert "slip" in response
