@@ -19,7 +19,7 @@ from rockframe.signals.integrals import (
     HOUSNER_PERIODS,
     PREDOMINANT_PERIODS,
     absolute_velocity_history,
-    arias_history,
+    arias_path,
     exceedance,
     ground_path,
     housner_intensity,
@@ -28,7 +28,7 @@ from rockframe.signals.integrals import (
     standardized_absolute_velocity,
     time_between_shares,
 )
-from rockframe.signals.motion import absolute_peak
+from rockframe.signals.motion import absolute_peak, knots_of
 from rockframe.signals.spectra import DAMPING_RATIO, check_cost
 from rockframe.suggestions import with_hints
 from rockframe.units import ACCELERATION, POSITIVE, QuantityLike, RatioLike, to_ratio, to_si
@@ -159,13 +159,13 @@ def _ground_measures(
 ) -> dict[str, Callable[[], float]]:
     """Return a function for each measure: some take a hundred times as long as others."""
     velocity, displacement = ground_path(signal)
-    arias = arias_history(signal, gravity)
+    arias = arias_path(signal, gravity)
     step = signal.time_step
     return {
         "peak_ground_acceleration": lambda: absolute_peak(signal.pieces),
         "peak_ground_velocity": lambda: absolute_peak(velocity),
         "peak_ground_displacement": lambda: absolute_peak(displacement),
-        "arias_intensity": lambda: float(arias[-1]),
+        "arias_intensity": lambda: float(knots_of(arias)[-1]),
         "cumulative_absolute_velocity": lambda: float(absolute_velocity_history(signal)[-1]),
         "standardized_cumulative_absolute_velocity": lambda: standardized_absolute_velocity(
             signal, _STANDARDIZED_THRESHOLD * gravity

@@ -24,7 +24,8 @@ from rockframe.motion.processing.samples import padded
 from rockframe.motion.processing.velocity_pulses import strongest_wavelet
 from rockframe.records import Reading, RecordLike, read_components, read_source, same_start
 from rockframe.signals import Signal
-from rockframe.signals.integrals import arias_history
+from rockframe.signals.integrals import arias_path
+from rockframe.signals.motion import knots_of
 from rockframe.suggestions import SuggestingMeta, suggests_names
 from rockframe.units import ANGLE, Quantity, QuantityLike, quantity
 
@@ -291,7 +292,7 @@ def principal_axis_and_intensities(pair: HorizontalPair) -> tuple[float, float, 
     """Compute :eq:`eq-principal-axes`: angle [rad], principal Arias intensities [m s^-1]."""
     # a record with a pulse at a right angle is a polynomial in every direction, also in its own
     first, both, second = (
-        float(arias_history(pair.rotated(angle).si.horizontal, STANDARD_GRAVITY)[-1])
+        float(knots_of(arias_path(pair.rotated(angle).si.horizontal, STANDARD_GRAVITY))[-1])
         for angle in ("0 deg", "45 deg", "90 deg")
     )
     common = both - 0.5 * (first + second)

@@ -31,15 +31,17 @@ def ground_path(signal: Signal) -> tuple[Array, Array]:
     return velocity, integral_of(velocity, signal.time_step)
 
 
-def arias_history(signal: Signal, gravity: float) -> Array:
-    """Return the Arias intensity up to every sample, :eq:`eq-arias`; starts at zero [m s^-1]."""
-    if signal.analytic:
-        exponents = np.arange(signal.pieces.shape[1])
-        weights = 1.0 / (exponents[:, None] + exponents + 1.0)  # integral of x^j x^k
-        square = ((signal.pieces @ weights) * signal.pieces).sum(axis=1)
-    else:
-        square = _trapezoid_means(signal.samples**2)
-    return _cumulative(square) * (signal.time_step * 0.5 * math.pi / gravity)
+def arias_path(signal: Signal, gravity: float) -> Array:
+    """Return the Arias intensity along time, as polynomials, :eq:`eq-arias` [m s^-1]."""
+    factor = 0.5 * math.pi / gravity
+    if not signal.analytic:
+        history = _cumulative(_trapezoid_means(signal.samples**2)) * (signal.time_step * factor)
+        return np.column_stack([history[:-1], np.diff(history)])
+    powers = signal.pieces.shape[1]
+    squares = np.zeros((len(signal.pieces), 2 * powers - 1))
+    for power in range(powers):
+        squares[:, power : power + powers] += signal.pieces[:, power, None] * signal.pieces
+    return integral_of(squares, signal.time_step * factor)
 
 
 def absolute_velocity_history(signal: Signal) -> Array:
@@ -88,21 +90,19 @@ def _cumulative(steps: Array) -> Array:
     return np.concatenate([[0.0], np.cumsum(steps)])
 
 
-def time_between_shares(history: Array, time_step: float, start: float, end: float) -> float:
-    """Return the time in which a growing history goes from one share of its last value to another.
+def time_between_shares(growing: Array, time_step: float, start: float, end: float) -> float:
+    """Return the time in which growing polynomials go from one share of the last value to another.
 
-    In seconds; zero for a history of zeros.
+    In seconds; zero for polynomials that are zero.
     """
-    if history[-1] <= 0.0:
+    knots = knots_of(growing)
+    if knots[-1] <= 0.0:
         return 0.0
-    shares = history / history[-1]
-    places = []
-    for share in (start, end):
-        after = int(np.searchsorted(shares, share))
-        before = after - 1
-        inside = (share - shares[before]) / (shares[after] - shares[before])
-        places.append(before + inside)
-    return float(places[1] - places[0]) * time_step
+    shares = np.array([start, end])
+    rows = np.searchsorted(knots / knots[-1], shares) - 1
+    crossing = growing[rows] / knots[-1]
+    crossing[:, 0] -= shares
+    return float(np.diff(rows + roots_of(crossing))[0]) * time_step
 
 
 def exceedance(signal: Signal, level: float) -> tuple[float, float]:

@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 from records import record_path
 from scipy.linalg import expm
+from scipy.optimize import brentq
 
 import rockframe as rf
 from rockframe.errors import ComponentError, RockframeWarning
@@ -291,13 +292,26 @@ def test_measures_of_a_sine_pulse():
     }
     for name, value in expected.items():
         assert found[name].item() == pytest.approx(value, rel=1e-9), name
-    # D5-95: Arias intensity grows as t - sin(2 rate t)/(2 rate)
-    time = np.linspace(0.0, length, 400_001)
-    share = (time - np.sin(2.0 * rate * time) / (2.0 * rate)) / length
-    for start, end in ((0.05, 0.75), (0.05, 0.95)):
-        reached = np.interp([start, end], share, time)
+
+
+@pytest.mark.parametrize("cycles", [0.01, 0.5, 1.7])
+def test_significant_durations_of_a_sine_pulse(cycles):
+    """Arias intensity grows as t - sin(2 rate t)/(2 rate), also between the samples."""
+    rate, length = 2.0 * math.pi * 0.8, cycles / 0.8
+    pulse = rf.GroundMotion.sine_pulse("3 m/s^2", "0.8 Hz", cycles=cycles)
+    found = intensity_measures(pulse)
+
+    def time_of(share):
+        def excess(time):
+            history, total = (t - math.sin(2.0 * rate * t) / (2.0 * rate) for t in (time, length))
+            return history - share * total
+
+        return brentq(excess, 0.0, length, xtol=1e-14)
+
+    for end in (0.75, 0.95):
         name = f"significant_duration_5_{100 * end:.0f}"
-        assert found[name].item() == pytest.approx(reached[1] - reached[0], rel=1e-4)
+        expected = time_of(end) - time_of(0.05)
+        assert found[name].item() == pytest.approx(expected, rel=1e-9), name
 
 
 @pytest.mark.parametrize("cycles", [0.37, 0.61, 1.13])
