@@ -64,16 +64,18 @@ def refined(signal: Signal, time_step: float) -> Array:
 
 
 def band_limited(dt: float, samples: Array, time_step: float) -> Array:
-    """Sample more finely, by band-limited interpolation up to the old Nyquist frequency.
+    """Sample at another step, by band-limited interpolation up to the old Nyquist frequency.
 
     The interpolation kernel is a sinc function with a Kaiser window, over 64 old samples to each
     side; its zeros are at the old samples. Beyond both ends the motion is continued by the
     straight line through its first and last sample. For a ratio that is not an integer, a quintic
     spline through samples at least eight times finer is evaluated.
     """
+    from scipy import interpolate as splines_module
     from scipy import signal as module
 
     signal: Any = module
+    splines: Any = splines_module
     integer = integer_ratio(dt / time_step)
     divisions = division_count(dt / time_step)
     sinc = np.sinc(
@@ -89,16 +91,8 @@ def band_limited(dt: float, samples: Array, time_step: float) -> Array:
         fine[::divisions] = samples
         return fine
     instants = sample_times((samples.size - 1) * dt, time_step)
-    return _spline(fine, dt / divisions, instants, 5)
-
-
-def _spline(samples: Array, time_step: float, instants: Array, degree: int) -> Array:
-    """Evaluate the spline of a degree through samples."""
-    from scipy import interpolate as module
-
-    splines: Any = module
-    times = np.arange(samples.size) * time_step
-    return splines.make_interp_spline(times, samples, k=degree)(instants)
+    times = np.arange(fine.size) * (dt / divisions)
+    return splines.make_interp_spline(times, fine, k=5)(instants)
 
 
 def division_count(ratio: float) -> int:
@@ -110,8 +104,8 @@ def downsampled(dt: float, samples: Array, time_step: float) -> Array:
     """Sample more coarsely, after a zero-phase low-pass filter against aliasing.
 
     The filter is a Chebyshev filter of order 9 with a ripple of 0.05 dB up to 0.8 of the new
-    Nyquist frequency, run forwards and backwards. For a ratio that is not an integer, a cubic
-    spline is then evaluated.
+    Nyquist frequency, run forwards and backwards. For a ratio that is not an integer, the result
+    is then interpolated like a finer one.
     """
     from scipy import signal as module
 
@@ -123,8 +117,7 @@ def downsampled(dt: float, samples: Array, time_step: float) -> Array:
     factor = integer_ratio(time_step / dt)
     if factor is not None:
         return smooth[::factor]
-    instants = sample_times((samples.size - 1) * dt, time_step)
-    return _spline(smooth, dt, instants, min(3, samples.size - 1))
+    return band_limited(dt, smooth, time_step)
 
 
 def padded(signal: Signal, count: int) -> Signal:

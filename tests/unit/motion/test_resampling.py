@@ -84,7 +84,7 @@ def test_coarsening_keeps_slow_and_removes_fast_motion_without_delay(step):
     assert "anti-alias" in " ".join(coarse.history[-2:])
 
 
-@pytest.mark.parametrize("step", [0.02, 0.025, 0.0333])
+@pytest.mark.parametrize("step", [0.0101, 0.0137, 0.02, 0.025, 0.0333])
 def test_coarsening_cuts_close_to_the_new_nyquist_frequency(step):
     # 0.7 and 1.1 of the new Nyquist frequency
     passed, removed = tone(0.35 / step), tone(0.55 / step)
