@@ -21,6 +21,7 @@ from rockframe.motion.processing.samples import (
     band_limited,
     division_count,
     downsampled,
+    integer_ratio,
     refined,
     tapered,
 )
@@ -208,6 +209,11 @@ def resampled(
         return refined(signal, step)
 
     result = map_samples(si, resample_signal, step)
+    same_function = (
+        not si.analytic
+        and method is Interpolation.LINEAR
+        and integer_ratio(si.time_step / step) is not None
+    )
     how = _METHOD_NOTES[method] if is_finer else "after a zero-phase anti-alias filter"
     if is_finer and si.horizontal.analytic:
         how = "read off the analytic pieces"
@@ -221,5 +227,5 @@ def resampled(
         *steps,
         *dropped_pieces_note(si),
         operation=operation,
-        same_spectrum=is_finer,
+        same_spectrum=same_function,
     )

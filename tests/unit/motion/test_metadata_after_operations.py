@@ -222,10 +222,13 @@ def test_only_steps_that_change_spectrum_drop_misfit():
         scaled.baseline_corrected(),
         scaled.through_storeys(periods=["0.5 s"], time_step="0.01 s"),
         scaled.resampled("0.02 s"),
+        scaled.resampled("0.005 s"),
+        scaled.resampled("0.007 s", interpolation="linear"),
     ):
         assert "spectral_misfit" not in changed.metadata
         assert changed.metadata["scale_factor"] == factor
-    for same in (scaled.scaled(-1), scaled.resampled("0.005 s"), scaled.with_vertical(scaled)):
+    lines = scaled.resampled("0.005 s", interpolation="linear")
+    for same in (scaled.scaled(-1), lines, scaled.with_vertical(scaled)):
         assert same.metadata["spectral_misfit"] == scaled.metadata["spectral_misfit"]
 
 
