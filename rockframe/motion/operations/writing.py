@@ -7,6 +7,8 @@ from hashlib import sha256
 from pathlib import Path
 from typing import Final
 
+import numpy as np
+
 from rockframe.arguments import checked_choice
 from rockframe.constants import STANDARD_GRAVITY
 from rockframe.errors import ComponentError
@@ -19,6 +21,8 @@ _KIND: Final = FileKind.marked("an acceleration file", (".at2",), _TITLE)
 _UNIT: Final = "ACCELERATION TIME SERIES IN UNITS OF G"
 _PER_LINE: Final = 5
 _USUAL_DECIMALS: Final = 4
+_SMALLEST: Final = 1e-99
+"""Acceleration below which zero is written: three digits of an exponent leave no space [g]."""
 
 
 @with_hints()
@@ -83,7 +87,9 @@ def to_at2(
     # not every program reads characters outside ASCII
     ascii_parts = (one.encode("ascii", "replace").decode() for one in (event, station, named))
     parts = [" ".join(one.replace(",", " ").split()) for one in ascii_parts]
-    samples = [f"{value:15.7E}" for value in (signal.samples / STANDARD_GRAVITY).tolist()]
+    values = signal.samples / STANDARD_GRAVITY
+    values[np.abs(values) < _SMALLEST] = 0.0
+    samples = [f"{value:15.7E}" for value in values.tolist()]
     rows = [samples[k : k + _PER_LINE] for k in range(0, len(samples), _PER_LINE)]
     lines = [
         _TITLE,

@@ -44,6 +44,15 @@ def test_the_layout_is_that_of_peer(tmp_path):
     assert len(fields) == 203
 
 
+def test_columns_stay_apart_where_samples_are_tiny(tmp_path):
+    """The tails of a Gaussian, typed by a user."""
+    tails = -np.exp(-(np.linspace(-40.0, 40.0, 203) ** 2))
+    GroundMotion.from_arrays((tails, "m/s^2"), "0.01 s").to_at2(tmp_path / "w.AT2")
+    lines = (tmp_path / "w.AT2").read_text().splitlines()[4:]
+    fields = [float(field) for line in lines for field in line.split()]
+    assert fields == pytest.approx(tails / 9.80665, rel=5.1e-8, abs=1e-99)
+
+
 def test_non_ascii_letters_are_replaced(tmp_path):
     motion = GroundMotion(record().si, metadata={"event": "İzmir", "station": "Muğla"})
     motion.to_at2(tmp_path / "w.AT2")
