@@ -163,7 +163,7 @@ class MotionValue(Immutable):
         return mine == (other.sha256, other.name, dict(other.metadata), other.history)
 
     def __hash__(self) -> int:
-        return hash((type(self).__name__, self.sha256))
+        return hash(self.sha256)
 
     def __reduce__(self) -> tuple[Any, ...]:
         recipe = None if self.recipe is None else dict(self.recipe)

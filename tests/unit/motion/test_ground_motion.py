@@ -194,6 +194,12 @@ def test_the_motion_cannot_be_changed():
 def test_equality_and_hash_go_by_content():
     assert motion() == motion()
     assert hash(motion()) == hash(motion())
+
+    class Measured(GroundMotion):
+        __slots__ = ()
+
+    assert Measured(motion().si, name="one") == GroundMotion(motion().si, name="one")
+    assert hash(Measured(motion().si, name="one")) == hash(motion())
     others = [
         motion(name="other"),
         motion(vertical=VALUES),
