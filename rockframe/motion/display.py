@@ -20,6 +20,8 @@ _PROCESSING_WORDS: Final = {
     "baseline corrected": "baseline corrected",
     "rotated by ": "rotated",
     "absolute acceleration of a floor": "at a floor",
+    "the pulse alone": "the pulse alone",
+    "the pulse taken out": "the pulse taken out",
 }
 """Beginnings of the steps of a history that change a motion, and the words for its name."""
 _FLOOR_STEP: Final = re.compile(r"absolute acceleration of a floor, floor (\d+) ")

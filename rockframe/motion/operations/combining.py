@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any, Final, cast
 import numpy as np
 
 from rockframe.errors import ComponentError, RecordWarning, warn
+from rockframe.motion.display import display_name
 from rockframe.motion.operations.derived import (
     VERTICAL_PREFIX,
     checked_other_motion,
@@ -84,7 +85,7 @@ def with_vertical(motion: MotionType, other: MotionValue | None) -> MotionType:
     count = max(len(motion), len(other))
     upwards = replace(padded(theirs.horizontal, count), time_step=si.time_step, name=VERTICAL)
     verb = "vertical component" if si.vertical is None else "vertical component replaced:"
-    steps = [f"{verb} {other.name} (sha256 {other.sha256[:12]})"]
+    steps = [f"{verb} {_identity(other)}"]
     sense = other.metadata.get(SENSE)
     if sense == DOWNWARDS:
         upwards = scaled_signal(upwards, -1.0)
@@ -193,9 +194,7 @@ def rotated(
         pieces += across * _polynomials(partner)
     turned = Signal(si.time_step, along * mine.samples + across * partner.samples, pieces)
     result = Motion(turned, None if si.vertical is None else padded(si.vertical, count))
-    steps = [
-        f"rotated by {degrees_text(turn, 9)} towards {other.name} (sha256 {other.sha256[:12]})"
-    ]
+    steps = [f"rotated by {degrees_text(turn, 9)} towards {_identity(other)}"]
     for label, one in (("this", motion), ("the other", other)):
         if len(one) < count:
             steps.append(f"{label} component padded with {count - len(one)} zeros")
@@ -210,6 +209,11 @@ def rotated(
     )
     metadata["component"] += f" rotated by {degrees_text(turn, 6)}"
     return derived_motion(motion, result, *steps, operation=operation, metadata=metadata)
+
+
+def _identity(other: MotionValue) -> str:
+    """Name the other motion, what was done to it, and its digest."""
+    return f"{display_name(other.name, other.history)} (sha256 {other.sha256[:12]})"
 
 
 def _scale(motion: MotionValue) -> float:

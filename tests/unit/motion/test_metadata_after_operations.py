@@ -193,6 +193,15 @@ def test_the_misfit_of_a_scaled_vertical_component_is_dropped():
     assert both.scaled(-1).metadata["vertical_spectral_misfit"] == 0.1
 
 
+def test_history_states_what_was_done_to_another_component():
+    changed = motion(EAST, name="other").filtered(high="20 Hz").scaled(0.5)
+    digest = changed.sha256[:12]
+    both = motion(NORTH).with_vertical(changed)
+    assert both.history == (f"vertical component 0.5 times other, filtered (sha256 {digest})",)
+    turned = motion(NORTH).rotated(changed, "30 deg").history[-1]
+    assert turned == f"rotated by 30° towards 0.5 times other, filtered (sha256 {digest})"
+
+
 @pytest.mark.parametrize(
     ("component", "metadata"), [("N", {"azimuth": 0.0}), ("DWN", {"positive": "down"})]
 )
@@ -249,6 +258,8 @@ def test_only_steps_that_change_spectrum_drop_misfit():
          "one, at floor 2"),
         (lambda m: m.matched(rf.TargetSpectrum.eurocode_8("0.2 g_0"),
                                  periods=("0.1 s", "0.5 s"), tolerance=0.3), "one, matched"),
+        (lambda m: m.velocity_pulse().extracted, "one, the pulse alone"),
+        (lambda m: m.velocity_pulse().residual, "one, the pulse taken out"),
     ],
 )  # fmt: skip
 def test_title_and_labels_name_processing_steps(process, name):
