@@ -7,6 +7,8 @@ from dataclasses import replace
 from enum import StrEnum
 from typing import TYPE_CHECKING, Final
 
+import numpy as np
+
 from rockframe.arguments import checked_choice
 from rockframe.errors import ComponentError
 from rockframe.motion.operations.derived import (
@@ -135,8 +137,13 @@ def window(
 
 def _sub_signal(signal: Signal, first: int, final: int) -> Signal:
     """Cut out the part between two samples, both included."""
-    pieces = None if signal.polynomials is None else signal.polynomials[first:final]
-    return replace(signal, samples=signal.samples[first : final + 1], polynomials=pieces)
+    samples = signal.samples[first : final + 1]
+    if signal.polynomials is None:
+        return replace(signal, samples=samples)
+    pieces = signal.polynomials[first:final]
+    # a pulse that is padded with zeros may jump here: the value before is not in the part
+    samples = np.append(pieces[0, 0], samples[1:])
+    return replace(signal, samples=samples, polynomials=pieces)
 
 
 @with_hints()

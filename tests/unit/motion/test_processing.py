@@ -454,6 +454,16 @@ def test_pieces_survive_scaling_and_windows():
     assert part.si.at(time) == pytest.approx(3.0 * np.cos(2.0 * np.pi * time), abs=3e-12)
 
 
+def test_window_after_a_pulse_is_still():
+    """The pulse jumps at its end, where zeros follow."""
+    pulse = GroundMotion.cosine_pulse("3 m/s^2", "1 Hz")
+    longer = pulse.with_vertical(GroundMotion.cosine_pulse("1 m/s^2", "1 Hz", cycles=2))
+    first, second = longer.window(end="1 s"), longer.window(start="1 s")
+    assert first.si.horizontal.samples.tolist() == pulse.si.horizontal.samples.tolist()
+    assert second.peak_acceleration.m == 0.0
+    assert second.si.vertical.peak == pytest.approx(1.0)
+
+
 def test_pieces_of_the_vertical_component_survive_scaling_and_windows():
     pulse = GroundMotion.sine_pulse("1 m/s^2", "1 Hz", 2)
     part = pulse.with_vertical(pulse.scaled(2)).scaled(3).window("0.25 s", "1.5 s")
