@@ -46,6 +46,8 @@ _MAX_VARIABLES: Final = 100
 _EXPECTED: Final = "a motion as GroundMotion.to_dataset().to_netcdf(...) writes it"
 _SI: Final = RecordUnit("m/s^2", 1.0)
 _EVEN: Final = 1e-6
+_UNEVEN: Final = 0.01
+"""Greatest deviation of a time over the duration, and over the time step, which add up [1]."""
 _OF_SUITES: Final = "sample_count"
 _A_SUITE: Final = "a suite of motions"
 _ONE_MOTION: Final = "one motion; rockframe.read_suite reads suites"
@@ -232,16 +234,24 @@ def _values(dataset: xr.Dataset, name: str) -> Array | None:
 
 
 def _time_step(dataset: xr.Dataset, attributes: Mapping[str, Any]) -> float:
-    if "time_step" in attributes:
-        return float(attributes["time_step"])
-    time = np.asarray(dataset["time"].values, dtype=np.float64)
-    if time.size < 2:
+    time = np.asarray(dataset["time"].values)
+    if time.dtype.kind == "m":  # as some versions of xarray decode seconds
+        time = time / np.timedelta64(1, "s")
+    stated = "time_step" in attributes
+    if time.size < 2 and not stated:
         found = "fewer than two times"
         raise NoMotionError(found, "a sampled motion")
-    step = float((time[-1] - time[0]) / (time.size - 1))
-    if not np.all(np.abs(np.diff(time) - step) <= _EVEN * abs(step)):
-        found = "an uneven time axis"
-        raise NoMotionError(found, "a uniform time step")
+    duration = float(time[-1] - time[0])
+    step = float(attributes["time_step"]) if stated else duration / (time.size - 1)
+    even = time[0] + step * np.arange(time.size)
+    tolerance = _UNEVEN * step + _EVEN * abs(duration)
+    if step > 0.0 and not np.allclose(time, even, rtol=0.0, atol=tolerance):
+        if not stated:
+            found = "an uneven time axis"
+            raise NoMotionError(found, "a uniform time step")
+        found = f"times that do not have the step of the attribute 'time_step', {step!r} s"
+        expected = "the same; delete this attribute if they were changed on purpose"
+        raise NoMotionError(found, expected)
     return step
 
 

@@ -136,6 +136,40 @@ def test_invalid_datasets_are_refused(damage, words):
         GroundMotion.from_dataset(damage(plain().to_dataset()))
 
 
+@pytest.mark.parametrize(
+    "change",
+    [
+        lambda d: d.isel(time=slice(None, None, 2)),
+        lambda d: d.isel(time=slice(None, None, -1)),
+        lambda d: d.drop_isel(time=[5, 6]),
+        lambda d: d.interp(time=d["time"].values[:-1] + 0.3 * np.arange(len(d.time) - 1) * 1e-3),
+    ],
+    ids=["thinned", "reversed", "gap", "interpolated"],
+)
+def test_times_that_contradict_the_time_step_are_refused(change):
+    changed = change(plain().to_dataset())
+    del changed.attrs["motion_sha256"]
+    with pytest.raises(SchemaError, match="step of the attribute 'time_step'"):
+        GroundMotion.from_dataset(changed)
+
+
+def test_the_step_of_changed_times_replaces_the_time_step():
+    thinned = plain().to_dataset().isel(time=slice(None, None, 2))
+    for name in ("motion_sha256", "time_step"):
+        del thinned.attrs[name]
+    motion = GroundMotion.from_dataset(thinned)
+    assert motion.si.time_step == pytest.approx(2.0 * plain().si.time_step)
+
+
+def test_times_in_single_precision_or_as_time_differences_are_read():
+    motion = plain()
+    dataset = motion.to_dataset()
+    single = dataset.assign_coords(time=dataset["time"].astype(np.float32) + 100)
+    differences = (dataset["time"].values * 1e9).round().astype("m8[ns]")
+    for changed in (single, dataset.assign_coords(time=differences)):
+        assert GroundMotion.from_dataset(changed) == motion
+
+
 def test_uneven_time_axis_is_refused():
     acceleration = ("time", [0.0, 1.0, 2.0], {"units": "m s^-2"})
     dataset = xr.Dataset({"acceleration": acceleration}, coords={"time": [0.0, 0.02, 0.05]})
