@@ -131,11 +131,7 @@ def from_dict(kind: type[MotionType], description: Mapping[str, Any]) -> MotionT
     try:
         motion = getattr(kind, constructor)(**arguments)
         for operation in operations:
-            ((name, values),) = operation.items()
-            if name not in OPERATIONS:
-                found = f"{short_repr(name)}{did_you_mean(name, OPERATIONS)}"
-                msg = f"found the operation {found}; expected one of {', '.join(OPERATIONS)}"
-                raise SchemaError(msg)
+            name, values = _name_and_arguments(operation)
             if values.get("other") is not None:
                 values = {**values, "other": from_dict(kind, values["other"])}
             motion = getattr(motion, name)(**values)
@@ -143,6 +139,24 @@ def from_dict(kind: type[MotionType], description: Mapping[str, Any]) -> MotionT
         msg = f"found arguments that do not fit {constructor} or its operations: {problem}"
         raise SchemaError(msg) from problem
     return motion
+
+
+def _name_and_arguments(operation: object) -> tuple[str, Mapping[str, Any]]:
+    """Read one operation of a description."""
+    if not isinstance(operation, Mapping) or len(operation) != 1:
+        found = f"{short_repr(operation)}; expected one name with its arguments"
+        msg = f"found the operation {found}, as in {{'scaled': {{'factor': 2}}}}"
+        raise SchemaError(msg)
+    ((name, values),) = operation.items()
+    if name not in OPERATIONS:
+        found = f"{short_repr(name)}{did_you_mean(name, OPERATIONS)}"
+        msg = f"found the operation {found}; expected one of {', '.join(OPERATIONS)}"
+        raise SchemaError(msg)
+    if not isinstance(values, Mapping):
+        found = f"{short_repr(values)}; expected names and values"
+        msg = f"found the arguments of the operation {name!r} to be {found}"
+        raise SchemaError(msg)
+    return name, values
 
 
 def _from_samples(kind: type[MotionType], description: Mapping[str, Any]) -> MotionType:

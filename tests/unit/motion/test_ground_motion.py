@@ -509,9 +509,16 @@ def test_pulse_with_recorded_vertical_has_no_constructor():
         {"constructor": "harmonic"},
         {"constructor": "sine_pulse", "operations": [{"to_dataset": {}}]},
         {"constructor": "sine_pulse", "operations": [{"scaled": {"colour": "red"}}]},
+        {"constructor": "sine_pulse", "operations": ["scaled"]},
+        {"constructor": "sine_pulse", "operations": {"scaled": {"factor": 2}}},
+        {"constructor": "sine_pulse", "operations": [{"scaled": {"factor": 2}, "window": {}}]},
+        {"constructor": "sine_pulse", "operations": [{"scaled": [2]}]},
     ],
 )
 def test_invalid_descriptions_are_refused(description):
-    words = "^found (only a description|the (constructor|operation) '|arguments that do not fit)"
+    words = (
+        "^found (only a description|the (constructor|operation) ['{]|(the )?arguments (that do not "
+        "fit|of the operation))"
+    )
     with pytest.raises(SchemaError, match=words):
         GroundMotion.from_dict(description)
