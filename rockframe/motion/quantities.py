@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import TYPE_CHECKING, Any, Final, TypeAlias, TypeGuard, cast
+from typing import TYPE_CHECKING, Any, Final, NamedTuple, TypeAlias, TypeGuard, cast
 
 import numpy as np
 import numpy.typing as npt
@@ -65,7 +65,7 @@ def times_to_si(value: object, *, owner: str, name: str) -> Array:
     values: object
     factor = 1.0
     if getattr(getattr(value, "dtype", None), "kind", "") in {"m", "M"}:
-        values = relative_seconds(value, "s")
+        values = relative_seconds(value)
         if values is None:
             msg = f"{owner}: {name} needs two or more dates, and none missing"
             raise ComponentError(msg)
@@ -137,7 +137,15 @@ def _has_unit(value: object) -> TypeGuard[tuple[object, str]]:
     return isinstance(value, tuple) and len(value) == 2 and isinstance(value[1], str)  # pyright: ignore[reportUnknownArgumentType]
 
 
-def attached_times(value: object) -> Array | None:
+class TimeAxis(NamedTuple):
+    """Times of an array."""
+
+    seconds: Array  # from the first time [s]
+    start: float  # first time from the origin [s]
+    origin: str  # what the start counts from, as far as the axis states it
+
+
+def attached_times(value: object) -> TimeAxis | None:
     """Return the times that an array has itself: a time axis, or the index of a Series."""
     held = cast("tuple[object, ...]", value)[0] if isinstance(value, tuple) and value else value
     if isinstance(held, xr.DataArray):
@@ -146,17 +154,23 @@ def attached_times(value: object) -> Array | None:
         axis = held["time"]
         whole = axis.dtype.kind in "iu" and "units" in axis.attrs  # else they may be row numbers
         times = axis.values.astype(np.float64) if whole else axis.values
-        return relative_seconds(times, axis.attrs.get("units", "s"))
+        return _time_axis(times, axis.attrs.get("units", "s"))
     if _is_quantity(held):
         held = cast("Any", held).magnitude
     index = getattr(held, "index", None)
     if not hasattr(held, "iloc") or index is None:  # no pandas Series
         return None
-    return relative_seconds(index, "s")
+    return _time_axis(index, "s")
 
 
-def relative_seconds(axis: object, unit: object) -> Array | None:
-    """Convert an axis to seconds from its first time; None if it is no time axis."""
+def relative_seconds(axis: object) -> Array | None:
+    """Convert an axis, in seconds or dates, to seconds from its first time; None for another."""
+    found = _time_axis(axis, "s")
+    return None if found is None else found.seconds
+
+
+def _time_axis(axis: object, unit: object) -> TimeAxis | None:
+    """Read an axis in a unit, or of dates; None if it is no time axis."""
     value: Any = axis
     if getattr(getattr(axis, "dtype", None), "tz", None) is not None:
         import pandas as pd
@@ -168,12 +182,17 @@ def relative_seconds(axis: object, unit: object) -> Array | None:
     if values.dtype.kind in "mM":
         if np.isnat(values).any():
             return None
-        return (values - values[0]) / np.timedelta64(1, "s")
+        second = np.timedelta64(1, "s")
+        zero = np.zeros(1, values.dtype)
+        return TimeAxis(
+            (values - values[0]) / second, float((values[:1] - zero)[0] / second), values.dtype.kind
+        )
     if values.dtype.kind != "f":
         return None
-    one = str(unit).partition(" since ")[0]  # as UDUNITS writes times since a date
+    one, _, origin = str(unit).partition(" since ")  # as UDUNITS writes times since a date
     try:
         scale = to_si(f"1 {one}", TIME, owner="relative_seconds", name="unit")
     except UnitsError:  # such as numbers of samples
         return None
-    return (values - values[0]).astype(np.float64) * scale
+    seconds = (values - values[0]).astype(np.float64) * scale
+    return TimeAxis(seconds, float(values[0]) * scale, origin)

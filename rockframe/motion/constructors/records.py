@@ -35,6 +35,8 @@ if TYPE_CHECKING:
 SAME_STEP: Final = 1e-6
 """Relative difference up to which the step of times is that of an argument [1]."""
 _UNEVEN: Final = 0.01
+_SAME_START: Final = 0.1
+"""Greatest distance of the starts of two components over the time step [1]."""
 
 
 @with_hints()
@@ -167,8 +169,8 @@ def from_arrays(
     UnitsError
         An array or the time step has no unit, or a wrong one.
     ComponentError
-        An array is not finite or not one-dimensional, both have different lengths, or times of
-        an array are uneven or of another step.
+        An array is not finite or not one-dimensional, both have different lengths or starts, or
+        times of an array are uneven or of another step.
 
     Examples
     --------
@@ -197,10 +199,13 @@ def from_arrays(
                 "give both the same length, or use with_vertical, which pads"
             )
             raise ComponentError(msg)
+    starts: list[tuple[str, float]] = []
     for label, array in (("acceleration", acceleration), ("vertical", vertical)):
         times = attached_times(array)
         if times is not None:
-            _check_times(times, step, owner=owner, label=label)
+            _check_times(times.seconds, step, owner=owner, label=label)
+            starts.append((times.origin, times.start))
+    _check_starts(starts, step, owner=owner)
     called = UNNAMED if name is None else checked_text(name, owner=owner, name="name") or UNNAMED
     words = f"built from arrays: {across.size} samples at {step!r} s"
     return kind(Motion.of_samples(step, across, upwards), name=called, history=(words,))
@@ -220,6 +225,19 @@ def _check_times(times: Array, step: float, *, owner: str, label: str) -> None:
         msg = (
             f"{owner}: the time axis of {label} is not even (sample {int(apart.argmax())} is "
             f"{apart.max():.3g} s from an even spacing); use from_times, which resamples"
+        )
+        raise ComponentError(msg)
+
+
+def _check_starts(starts: list[tuple[str, float]], step: float, *, owner: str) -> None:
+    """Refuse times of two arrays that begin at different instants of one origin."""
+    if len(starts) < 2 or starts[0][0] != starts[1][0]:
+        return
+    late = starts[1][1] - starts[0][1]
+    if abs(late) > _SAME_START * step:
+        msg = (
+            f"{owner}: the times of vertical start {abs(late):.4g} s "
+            f"{'after' if late > 0.0 else 'before'} those of acceleration; cut both to one start"
         )
         raise ComponentError(msg)
 

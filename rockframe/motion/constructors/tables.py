@@ -287,7 +287,7 @@ def _step(frame: Any, time: str | None, time_step: QuantityLike | None, owner: s
         near = did_you_mean(time, map(str, frame.columns))
         msg = f"{owner}: time {short_repr(time)} is none of the columns{near}"
         raise ComponentError(msg)
-    times = relative_seconds(axis, "s")
+    times = relative_seconds(axis)
     if times is None:
         if requested is None:
             msg = f"{owner}: the frame has no times; give time, or time_step='0.01 s'"

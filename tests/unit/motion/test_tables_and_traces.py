@@ -58,6 +58,26 @@ class TestTimesOfAnArray:
             with pytest.raises(ComponentError, match=r"has the step 0\.01 s"):
                 GroundMotion.from_arrays(acceleration, "0.02 s")
 
+    @pytest.mark.parametrize(
+        "index", [TIMES, DATES, DATES - DATES[0], DATES.tz_localize("UTC").tz_convert("Asia/Tokyo")]
+    )
+    def test_both_components_must_start_at_once(self, index):
+        across, up = (pd.Series(VALUES[9:], index=one) for one in (index[:-9], index[9:]))
+        with pytest.raises(ComponentError, match=r"vertical start 0\.09 s after those"):
+            GroundMotion.from_arrays((across, "g_0"), "0.01 s", (up, "g_0"))
+        with pytest.raises(ComponentError, match=r"vertical start 0\.09 s before those"):
+            GroundMotion.from_arrays((up, "g_0"), "0.01 s", (across, "g_0"))
+        both = GroundMotion.from_arrays((up, "g_0"), "0.01 s", (2.0 * up, "g_0"))
+        assert both.si.vertical.samples.tolist() == (2.0 * both.si.horizontal.samples).tolist()
+
+    @pytest.mark.parametrize("unit", ["ms", "milliseconds since 2020-02-03"])
+    def test_starts_in_other_units_or_of_unknown_origin_are_compared_if_known(self, unit):
+        label = {"units": "m/s^2"}
+        in_seconds = xr.DataArray(VALUES, {"time": ("time", 3.0 + TIMES)}, attrs=label)
+        axis = ("time", 1e3 * (3.0 + TIMES), {"units": unit})
+        other = xr.DataArray(VALUES, {"time": axis}, attrs=label)
+        assert len(GroundMotion.from_arrays(in_seconds, "0.01 s", other)) == COUNT
+
 
 class TestFromTimes:
     def test_straight_lines_between_the_times(self):
