@@ -78,8 +78,6 @@ def pads_numbers(
     law = ElasticPads(
         Viscoelastic(stiffness, damping),
         rest,
-        rest,
-        rest,
         0.5 * stiffness * rest * rest,
         sqrt(2.0 * stiffness),
         2.0 * body.gravity * noise / damping if damping > 0.0 else 0.0,
