@@ -299,10 +299,10 @@ class SlideMotion(OnRigidGround, SlideNumbers):
     @kernel
     def energies(self, mode: int, state: Vector) -> Energies:
         """Return kinetic and gravity energy; nothing is elastic."""
-        return self.energies_alone(mode, state)
+        return self.energies_of_bodies(mode, state)
 
     @inlined
-    def energies_alone(self, mode: int, state: Vector) -> Energies:
+    def energies_of_bodies(self, mode: int, state: Vector) -> Energies:
         """Return the energies of the block without links."""
         kinetic = self.kinetic_energy(mode, state)
         return Energies(kinetic, self.gravity * self.centre_rise(mode, state), 0.0, 0.0)
