@@ -12,6 +12,7 @@ from rockframe.dynamics import events
 from rockframe.dynamics.base import Guards
 from rockframe.dynamics.protocol import (
     BODY_COLUMNS,
+    CORNER_REACTIONS,
     MEMORY,
     Column,
     Energies,
@@ -58,13 +59,7 @@ SLIDE_MEMORY: Final = (*MEMORY, "peak_slip_left", "peak_slip_right")
 ROUNDING: Final = 1e-12
 """Rounding noise of accelerations over gravity, and of heights over the block's size [1]."""
 
-COLUMNS: Final = (
-    *BODY_COLUMNS,
-    Column("left_reaction", per_mass=True),
-    Column("right_reaction", per_mass=True),
-    Column("slip"),
-    Column("slip_velocity"),
-)
+COLUMNS: Final = (*BODY_COLUMNS, *CORNER_REACTIONS, Column("slip"), Column("slip_velocity"))
 
 
 class Contact(NamedTuple):

@@ -24,6 +24,7 @@ from rockframe.dynamics.body_statics import (
     uplift_rotation,
 )
 from rockframe.dynamics.on_base import BodyOnBase
+from rockframe.dynamics.protocol import CORNER_REACTIONS
 from rockframe.dynamics.single_body import eccentricity_of
 from rockframe.dynamics.statics import StandingChain
 from rockframe.system.bodies import BaseLoad, Restitutions, base_restitution, restitution_cautions
@@ -39,7 +40,7 @@ NO_VERTICAL_START: Final = (
     "InitialState: vertical_displacement and vertical_velocity need a base that gives way; on "
     "rigid ground they follow from the rotation"
 )
-REACTIONS: Final[tuple[str, ...]] = ("left_reaction", "right_reaction")
+REACTIONS: Final = tuple(one.name for one in CORNER_REACTIONS)
 
 
 def uplift_words(radians: float) -> str:
