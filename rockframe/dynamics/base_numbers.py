@@ -15,7 +15,7 @@ from rockframe.dynamics.body import BaseLine, Body
 from rockframe.dynamics.law_trial import check_point_law
 from rockframe.dynamics.pads import LEAVE, REENGAGE, ROUNDING, ElasticPads, Pads
 from rockframe.dynamics.point_law import Point, Viscoelastic
-from rockframe.dynamics.protocol import Column
+from rockframe.dynamics.protocol import CORNER_REACTIONS, Column
 from rockframe.dynamics.springs import GUARDS, Springs
 
 
@@ -78,8 +78,6 @@ def pads_numbers(
     law = ElasticPads(
         Viscoelastic(stiffness, damping),
         rest,
-        rest,
-        rest,
         0.5 * stiffness * rest * rest,
         sqrt(2.0 * stiffness),
         2.0 * body.gravity * noise / damping if damping > 0.0 else 0.0,
@@ -89,7 +87,7 @@ def pads_numbers(
     )
     return BaseNumbers(
         law,
-        (Column("left_reaction", per_mass=True), Column("right_reaction", per_mass=True)),
+        CORNER_REACTIONS,
         settlement=rest,
         vertical_stiffness=2.0 * stiffness,
         rotational_stiffness=stiffness * (body.left**2 + body.right**2),
@@ -244,7 +242,7 @@ def rigid_numbers(body: Body) -> BaseNumbers:
     width = body.left + body.right
     return BaseNumbers(
         Rigid(0.0, 0.0, 1.0, width, by_pressure=False),
-        (Column("left_reaction", per_mass=True), Column("right_reaction", per_mass=True)),
+        CORNER_REACTIONS,
         settlement=0.0,
         vertical_stiffness=0.0,
         rotational_stiffness=0.0,

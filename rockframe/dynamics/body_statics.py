@@ -59,7 +59,7 @@ class StandingBody(NamedTuple):
         """Return the position of the centre of mass along the deck beneath, and its derivatives."""
         body = self.part.body
         pin = body.pin(pivot)
-        across = self.offset + pin + (body.height * attitude.sine - pin * attitude.cosine)
+        across = self.offset + pin + body.about_pin(pin, attitude)
         return body.reach(pin, attitude), across
 
     def scaled(self, share: float) -> "StandingBody":
@@ -87,12 +87,11 @@ class Pose(NamedTuple):
 
 
 def standing_body(
-    part: BodyOnBase, mass: float = 1.0, top: float = 0.0, offset: float = 0.0, own: Any = None
+    part: BodyOnBase, mass: float = 1.0, top: float = 0.0, offset: float = 0.0
 ) -> StandingBody:
-    """Return a body on its base; `own`: the base's variables, by default those before any run."""
+    """Return a body on its base, with the base's variables as they are before any run."""
     body, base = part
-    if own is None:
-        own = base.read(np.zeros(base.variables()), 0)
+    own = base.read(np.zeros(base.variables()), 0)
     rest = body.base_line_at(BodyState(0.0, 0.0, 0.0, 0.0, 0.0, 0.0))
     return StandingBody(part, mass, top, offset, base.level(True, rest, own), own)
 

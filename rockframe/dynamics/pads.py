@@ -59,9 +59,9 @@ class PadNumbers(NamedTuple):
     """Two pads, per unit mass of the body on them."""
 
     law: Any  # of each pad, a rockframe.dynamics.point_law.PointLaw
-    left_settlement: float  # height of the unloaded level above the corner's place at rest [m]
-    right_settlement: float
-    rest: float  # settlement under half the weight [m]
+    # settlement of each under half the weight: height of its unloaded level above its corner's
+    # place at rest [m]
+    rest: float
     rest_energy: float  # of one pad under half the weight [m^2 s^-2]
     frequency: float  # angular frequency of vertical vibration [s^-1]
     least: float  # speed of a landing below which a dashpot's force is rounding noise [m s^-1]
@@ -144,13 +144,10 @@ class Pads(Base, PadNumbers):
     @inlined
     def corner(self, left: bool, line: BaseLine) -> Point:
         """Return the compression and motion of one corner, for its law."""
-        settlement = self.left_settlement if left else self.right_settlement
         rise = line.left if left else line.right
         speed = line.left_speed if left else line.right_speed
         change = line.left_acceleration if left else line.right_acceleration
-        return Point(
-            settlement - rise, -speed, -change, rise, settlement, 0.0 if left else 1.0, line
-        )
+        return Point(self.rest - rise, -speed, -change, rise, self.rest, 0.0 if left else 1.0, line)
 
     @inlined
     def reaction(self, contact: int, left: bool, line: BaseLine, own: Any) -> float:
@@ -200,9 +197,8 @@ class Pads(Base, PadNumbers):
         """Return the energy of a pad, and the energy less that at rest."""
         if self.level(left, line, own) <= 0.0:
             return 0.0, -self.rest_energy
-        return self.law.energies(
-            self.corner(left, line), self.rest, self.rest_energy, self.of_corner(own, left)
-        )
+        point, mine = self.corner(left, line), self.of_corner(own, left)
+        return self.law.energies(point, self.rest_energy, mine)
 
     @kernel
     def energy(self, line: BaseLine, own: Any) -> tuple[float, float]:
@@ -427,10 +423,9 @@ class ElasticPads(Pads):
     @kernel
     def resting_height(self, left: float, right: float, own: Any) -> float:
         """Return the height at which both pads, or only the lower one, carry the weight [m]."""
-        sunk = (self.left_settlement - self.rest) + (self.right_settlement - self.rest)
-        middle = 0.5 * (sunk - left - right)
-        if middle + left > self.left_settlement:
-            return self.right_settlement - right - 2.0 * self.rest
-        if middle + right > self.right_settlement:
-            return self.left_settlement - left - 2.0 * self.rest
+        middle = 0.0 - 0.5 * (left + right)
+        if middle + left > self.rest:
+            return self.rest - right - 2.0 * self.rest
+        if middle + right > self.rest:
+            return self.rest - left - 2.0 * self.rest
         return middle

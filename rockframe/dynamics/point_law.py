@@ -123,10 +123,10 @@ class PointLaw:
         return ()
 
     @inlined
-    def energies(self, point: Point, rest: float, at_rest: float, own: Any) -> tuple[float, float]:
+    def energies(self, point: Point, at_rest: float, own: Any) -> tuple[float, float]:
         """Return the stored energy, and the energy less that at rest, `at_rest`.
 
-        A law may give the difference without cancellation; `rest` is the compression at rest.
+        A law may give the difference without cancellation.
         """
         stored = self.energy(point, own)
         return stored, stored - at_rest
@@ -267,12 +267,9 @@ class Viscoelastic(NamedTuple):
         """Return k u^2/2."""
         return 0.5 * self.stiffness * point.pressed * point.pressed
 
-    def energies(
-        self, point: Point, rest: float, at_rest: float, own: Variables
-    ) -> tuple[float, float]:
-        """Return the energy of the spring, and the energy less that at rest, as products."""
+    def energies(self, point: Point, at_rest: float, own: Variables) -> tuple[float, float]:
+        """Return the energy of the spring, and the energy less that at rest, as a product."""
         change = point.rise * (0.5 * point.rise - point.settlement)
-        change += 0.5 * (point.settlement - rest) * (point.settlement + rest)
         return self.energy(point, own), self.stiffness * change
 
     def return_rate(self) -> float:

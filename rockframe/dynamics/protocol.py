@@ -254,6 +254,11 @@ BODY_COLUMNS: Final = (
 Velocities and accelerations are those of the centre of mass, relative to the ground; the
 reactions are those of the body's own base, along and normal to the surface that it stands on.
 """
+CORNER_REACTIONS: Final = (
+    Column("left_reaction", per_mass=True),
+    Column("right_reaction", per_mass=True),
+)
+"""Columns of bases that bear at two corners."""
 BODY_FORCES: Final = ("base_shear", "horizontal_reaction", "vertical_reaction")
 """The columns from which the friction that a body needs follows."""
 

@@ -17,10 +17,10 @@ from rockframe.dynamics.body import REST_AMPLITUDE
 from rockframe.dynamics.events import FULL, IMPACT, LEFT, REST, RIGHT, UPLIFT
 from rockframe.dynamics.protocol import (
     BODY_COLUMNS,
+    CORNER_REACTIONS,
     IMPACT_LOSS,
     LAST_EVENT,
     MEMORY,
-    Column,
     ContactModel,
     Energies,
     Ground,
@@ -42,11 +42,7 @@ UPLIFT_ON_RIGHT: Final = 1
 UPLIFT_ON_LEFT: Final = 2
 GUARDS: Final = 3
 
-COLUMNS: Final = (
-    *BODY_COLUMNS,
-    Column("left_reaction", per_mass=True),
-    Column("right_reaction", per_mass=True),
-)
+COLUMNS: Final = (*BODY_COLUMNS, *CORNER_REACTIONS)
 
 
 # indices of columns that systems built on this one change

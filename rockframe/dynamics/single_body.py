@@ -343,7 +343,7 @@ def starting_state(part: BodyOnBase, start: Start, own: Variables) -> tuple[Body
     body, base, rotation = part.body, part.base, start.rotation or 0.0
     height = start.vertical_displacement
     if height is None:
-        pose = equilibrium_pose(standing_body(part, own=own), rotation, body.gravity)
+        pose = equilibrium_pose(standing_body(part), rotation, body.gravity)
         height = pose.state.vertical
     state = BodyState(rotation, height, 0.0, start.angular_velocity, start.vertical_velocity, 0.0)
     return state, part.mode_for_contact(base.starting(body.base_line_at(state), own), state)

@@ -12,6 +12,7 @@ from rockframe.dynamics import events
 from rockframe.dynamics.base import Guards
 from rockframe.dynamics.protocol import (
     BODY_COLUMNS,
+    CORNER_REACTIONS,
     MEMORY,
     Column,
     Energies,
@@ -58,13 +59,7 @@ SLIDE_MEMORY: Final = (*MEMORY, "peak_slip_left", "peak_slip_right")
 ROUNDING: Final = 1e-12
 """Rounding noise of accelerations over gravity, and of heights over the block's size [1]."""
 
-COLUMNS: Final = (
-    *BODY_COLUMNS,
-    Column("left_reaction", per_mass=True),
-    Column("right_reaction", per_mass=True),
-    Column("slip"),
-    Column("slip_velocity"),
-)
+COLUMNS: Final = (*BODY_COLUMNS, *CORNER_REACTIONS, Column("slip"), Column("slip_velocity"))
 
 
 class Contact(NamedTuple):
@@ -299,10 +294,10 @@ class SlideMotion(OnRigidGround, SlideNumbers):
     @kernel
     def energies(self, mode: int, state: Vector) -> Energies:
         """Return kinetic and gravity energy; nothing is elastic."""
-        return self.energies_alone(mode, state)
+        return self.energies_of_bodies(mode, state)
 
     @inlined
-    def energies_alone(self, mode: int, state: Vector) -> Energies:
+    def energies_of_bodies(self, mode: int, state: Vector) -> Energies:
         """Return the energies of the block without links."""
         kinetic = self.kinetic_energy(mode, state)
         return Energies(kinetic, self.gravity * self.centre_rise(mode, state), 0.0, 0.0)

@@ -47,18 +47,18 @@ from rockframe.dynamics.slide_motion import (
 from rockframe.dynamics.trigonometry import sine_cosine
 
 
-class SlideSwitches(SlideMotion):
-    """Switches of mode, and impacts, of a block. A mixin of systems."""
+class SlideRock(SlideMotion):
+    """A block on rigid ground with friction, per unit mass: a system."""
 
     __slots__ = ()
 
     @kernel
     def switch(self, mode: int, guard: int, state: Vector, ground: Ground, memory: Vector) -> int:
         """Return the mode after the switch of a guard; an impact also changes the rates."""
-        return self.switch_contact(mode, guard, state, ground, memory)
+        return self.switch_body(mode, guard, state, ground, memory)
 
     @inlined
-    def switch_contact(
+    def switch_body(
         self, mode: int, guard: int, state: Vector, ground: Ground, memory: Vector
     ) -> int:
         """Return the mode after a guard of bearing or slip has fallen through zero."""
@@ -343,12 +343,6 @@ class SlideSwitches(SlideMotion):
         state[DOF + ROTATION] -= arm_x * rise / (self.inertia + arm_x * arm_x + arm_y * arm_y)
         state[DOF + RISE] = 0.0
         return True
-
-
-class SlideRock(SlideSwitches):
-    """A block on rigid ground with friction, per unit mass: a system."""
-
-    __slots__ = ()
 
 
 def ill_posed_friction(inertia: float, square: float) -> float:

@@ -151,7 +151,7 @@ class Springs(Base, SpringNumbers):
             point, variables = self.point(i, line), self.law_variables(own, i)
             one, less = 0.0, -self.rest_energy
             if point.pressed > self.law.sunk(variables):
-                one, less = self.law.energies(point, self.settlement, self.rest_energy, variables)
+                one, less = self.law.energies(point, self.rest_energy, variables)
             stored += self.lengths[i] * one
             change += self.lengths[i] * less
         return stored, change

@@ -11,15 +11,25 @@ from typing import Any, Final, NamedTuple
 
 import numpy as np
 
-from rockframe.compiled import Vector, inlined, kernel, numbers_in, put, view_from, view_of
+from rockframe.compiled import Vector, inlined, kernel, put, view_of
 from rockframe.dynamics import rigid_ground as frame
+from rockframe.dynamics.chain.link_rows import (
+    GROUND,
+    LINK_COLUMNS,
+    PLACE_VALUE,
+    REST_ENERGY,
+    ChainLink,
+    LinkRows,
+    link_row,
+    padded_state_count,
+)
+from rockframe.dynamics.chain.linked import with_workspace
 from rockframe.dynamics.links import GUARDS, LinkNumbers, Stretch
 from rockframe.dynamics.pads import ROUNDING
 from rockframe.dynamics.protocol import (
     LAST_EVENT,
     LINK_LOSS,
     MEMORY,
-    POWERS,
     Column,
     ContactModel,
     Energies,
@@ -32,13 +42,7 @@ from rockframe.dynamics.protocol import (
 )
 from rockframe.dynamics.trigonometry import sine_cosine
 
-# columns of the row of a tendon
-REST_ENERGY: Final = 0  # elastic energy at rest [m^2 s^-2]
-PLACE_VALUE: Final = 1  # factor of its state in the number of the mode
-FIRST_NUMBER: Final = 2  # first of the numbers of its law
-LINK_COLUMNS: Final = ("restrainer_force", "restrainer_elongation", "restrainer_state")
 FRAME_COLUMNS: Final = len(frame.COLUMNS)
-COLUMNS_PER_TENDON: Final = len(LINK_COLUMNS)
 LINK_PLACE: Final = len(MEMORY)
 """Index into the memory: the tendon of the last event, counted from 1; 0 for none."""
 
@@ -48,13 +52,14 @@ class FrameTendonNumbers(NamedTuple):
 
     rocking: frame.BlockOnRigidGround
     half_width: float  # b, of a column [m]
-    columns: float  # number of columns; each has all tendons
+    column_count: float  # number of columns; each has all tendons
+    body_count: int  # 0: tendons follow the rotation, without poses of bodies
     law: Any  # of the class of all tendons
     link_count: int
     rows: Vector  # rows of the tendons, then the workspace
 
 
-class FrameWithTendons(FrameTendonNumbers, OnRigidGround):
+class FrameWithTendons(FrameTendonNumbers, LinkRows, OnRigidGround):
     """Columns under a beam with tendons: a system."""
 
     __slots__ = ()
@@ -63,21 +68,6 @@ class FrameWithTendons(FrameTendonNumbers, OnRigidGround):
     def coordinates(self) -> int:
         """Return 1, the rotation."""
         return 1
-
-    @kernel
-    def variables(self) -> int:
-        """Return the number of variables of all tendons."""
-        return self.link_count * self.law.variables()
-
-    @kernel
-    def guards(self) -> int:
-        """Return the number of guards, of the columns and then of each tendon in turn."""
-        return frame.GUARDS + GUARDS * self.link_count
-
-    @kernel
-    def modes(self) -> int:
-        """Return the number of modes."""
-        return frame.MODES * int(self.law.states() ** self.link_count)
 
     @inlined
     def moving_in(self, mode: int) -> int:
@@ -90,50 +80,19 @@ class FrameWithTendons(FrameTendonNumbers, OnRigidGround):
         return self.rocking.contact_state_of(mode % frame.MODES, k)
 
     @inlined
-    def row_of_link(self, i: int) -> Vector:
-        """Return the row of a tendon."""
-        width = FIRST_NUMBER + self.law.number_count()
-        return view_of(self.rows, i * width, width)
+    def bodies_end(self) -> int:
+        """Return 0: no rows of bodies are before those of tendons."""
+        return 0
 
     @inlined
-    def law_of(self, row: Vector) -> Any:
-        """Return the law of a tendon, by its row."""
-        return self.law.with_numbers(view_from(row, FIRST_NUMBER))
+    def body_guard_count(self) -> int:
+        """Return the number of guards without tendons."""
+        return frame.GUARDS
 
     @inlined
-    def workspace(self, first: int, count: int) -> Vector:
-        """Return a part of the workspace behind the rows."""
-        return view_of(
-            self.rows, self.link_count * (FIRST_NUMBER + self.law.number_count()) + first, count
-        )
-
-    @inlined
-    def slopes(self) -> Vector:
-        """Return the workspace for accelerations, rates of variables, and powers."""
-        return self.workspace(0, 1 + self.variables() + POWERS)
-
-    @inlined
-    def guard_workspace(self, which: int) -> Vector:
-        """Return the workspace for guards (0) or their rates (1)."""
-        first = 1 + self.variables() + POWERS + which * self.guards()
-        return self.workspace(first, self.guards())
-
-    @inlined
-    def column_workspace(self) -> Vector:
-        """Return the workspace for columns."""
-        first = 1 + self.variables() + POWERS + 2 * self.guards()
-        return self.workspace(first, FRAME_COLUMNS + COLUMNS_PER_TENDON * self.link_count)
-
-    @inlined
-    def link_state(self, mode: int, row: Vector) -> int:
-        """Return the state of a tendon, by its row."""
-        return mode // int(row[PLACE_VALUE]) % self.law.states()
-
-    @inlined
-    def of_link(self, i: int, state: Vector) -> Vector:
-        """Return the variables of a tendon."""
-        each = self.law.variables()
-        return view_of(state, 2 + i * each, each)
+    def columns(self) -> int:
+        """Return the number of columns."""
+        return FRAME_COLUMNS + LINK_COLUMNS * self.link_count
 
     @inlined
     def lever(self, rotation: float) -> float:
@@ -159,8 +118,8 @@ class FrameWithTendons(FrameTendonNumbers, OnRigidGround):
         for i in range(self.link_count):
             row = self.row_of_link(i)
             law = self.law_of(row)
-            force += law.force(self.link_state(mode, row), link, self.of_link(i, state))
-        return self.columns * force
+            force += law.force(self.link_state(mode, row), link, self.link_variables(i, state))
+        return self.column_count * force
 
     @kernel
     def accelerate(self, mode: int, state: Vector, ground: Ground) -> Vector:
@@ -175,13 +134,13 @@ class FrameWithTendons(FrameTendonNumbers, OnRigidGround):
         inertia = self.rocking.corner(rocking_mode).inertia
         link, dissipated = self.tendon_stretch(mode, state, 0.0), 0.0
         for i in range(self.link_count):
-            row, own = self.row_of_link(i), self.of_link(i, state)
+            row, own = self.row_of_link(i), self.link_variables(i, state)
             law, each = self.law_of(row), self.law.variables()
             link_state = self.link_state(mode, row)
             dissipated += law.power(link_state, link, own)
             law.rates(link_state, link, own, view_of(out, 1 + i * each, each))
         out[0] = found[0] - self.rocking.side(rocking_mode) * restoring / inertia
-        out[1 + self.variables()] = self.columns * dissipated
+        out[1 + self.variables()] = self.column_count * dissipated
         out[2 + self.variables()] = found[2]
         return out
 
@@ -195,8 +154,10 @@ class FrameWithTendons(FrameTendonNumbers, OnRigidGround):
         for i in range(self.link_count):
             row = self.row_of_link(i)
             law = self.law_of(row)
-            dissipated += law.power(self.link_state(mode, row), link, self.of_link(i, state))
-        return self.columns * dissipated, self.rocking.powers(rocking_mode, state, slope, ground)[1]
+            dissipated += law.power(self.link_state(mode, row), link, self.link_variables(i, state))
+        return self.column_count * dissipated, self.rocking.powers(
+            rocking_mode, state, slope, ground
+        )[1]
 
     @kernel
     def guards_in(self, mode: int, state: Vector, slope: Slope, ground: Ground) -> Guards:
@@ -221,7 +182,7 @@ class FrameWithTendons(FrameTendonNumbers, OnRigidGround):
                 values[j], changes[j] = 1.0, 0.0
                 if rocking_mode != frame.RESTING:
                     values[j], changes[j] = law.guard(
-                        which, link_state, link, self.of_link(i, state)
+                        which, link_state, link, self.link_variables(i, state)
                     )
         return Guards(values, changes)
 
@@ -240,9 +201,9 @@ class FrameWithTendons(FrameTendonNumbers, OnRigidGround):
         row, link = self.row_of_link(i), self.tendon_stretch(mode, state, 0.0)
         link_state, law = self.link_state(mode, row), self.law_of(row)
         which = guard - frame.GUARDS - GUARDS * i
-        found = law.switch(which, link_state, link, self.of_link(i, state))
+        found = law.switch(which, link_state, link, self.link_variables(i, state))
         memory[LAST_EVENT] = found.event
-        memory[LINK_LOSS] += self.columns * found.lost
+        memory[LINK_LOSS] += self.column_count * found.lost
         memory[LINK_PLACE] = i + 1.0
         return mode + int(row[PLACE_VALUE]) * (found.state - link_state)
 
@@ -254,10 +215,12 @@ class FrameWithTendons(FrameTendonNumbers, OnRigidGround):
         for i in range(self.link_count):
             row = self.row_of_link(i)
             law = self.law_of(row)
-            stored += law.energy(self.link_state(mode, row), link, self.of_link(i, state))
+            stored += law.energy(self.link_state(mode, row), link, self.link_variables(i, state))
             at_rest += row[REST_ENERGY]
-        elastic = self.columns * stored
-        return Energies(found.kinetic, found.gravity, elastic, elastic - self.columns * at_rest)
+        elastic = self.column_count * stored
+        return Energies(
+            found.kinetic, found.gravity, elastic, elastic - self.column_count * at_rest
+        )
 
     @kernel
     def observe(
@@ -288,9 +251,9 @@ class FrameWithTendons(FrameTendonNumbers, OnRigidGround):
             out[frame.RIGHT_REACTION] = 0.5 * (1.0 - share) * out[frame.VERTICAL_REACTION]
         link = self.tendon_stretch(mode, state, 0.0)
         for i in range(self.link_count):
-            row, own = self.row_of_link(i), self.of_link(i, state)
+            row, own = self.row_of_link(i), self.link_variables(i, state)
             law, link_state = self.law_of(row), self.link_state(mode, row)
-            j = FRAME_COLUMNS + COLUMNS_PER_TENDON * i
+            j = FRAME_COLUMNS + LINK_COLUMNS * i
             out[j], out[j + 1] = law.force(link_state, link, own), link.elongation
             out[j + 2] = law.shown(link_state)
         return out
@@ -302,25 +265,25 @@ def frame_with_tendons(
     """Return the model of a frame with tendons from the model without them."""
     rows, value = list[Vector](), frame.MODES
     for one in links:
-        rows.append(np.array([0.0, value, *numbers_in(one.law)]))
-        value *= one.law.states()
-    law, count = links[0].law, len(links)
-    variables = count * law.variables()
-    size = 1 + variables + POWERS + 2 * (frame.GUARDS + GUARDS * count)
-    size += FRAME_COLUMNS + COLUMNS_PER_TENDON * count
+        along = ChainLink(0, (0.0, 0.0), GROUND, (0.0, 0.0), (0.0, 0.0), one)
+        rows.append(link_row(along, one.law, value))
+        value *= padded_state_count(one.law.states())
     rocking: Any = model.system
-    numbers = np.concatenate([*rows, np.zeros(size)])
-    system = FrameWithTendons(rocking, half_width, float(columns), law, count, numbers)
+    filled, count = np.concatenate(rows), len(links)
+    system: FrameWithTendons = with_workspace(
+        FrameWithTendons(rocking, half_width, float(columns), 0, links[0].law, count, filled),
+        filled,
+    )
     stiffness = columns * sum(one.stiffness for one in links) * (2.0 * half_width) ** 2
     fastest = math.sqrt(model.fastest_frequency**2 + stiffness / rocking.right.inertia)
 
     def initial(start: Start) -> tuple[int, Vector, Vector]:
         mode, state, memory = model.initial(start)
-        state = np.concatenate([state, np.zeros(variables)])
+        state = np.concatenate([state, np.zeros(system.variables())])
         link = system.tendon_stretch(mode, state, 0.0)
         for i in range(count):
             row = system.row_of_link(i)
-            found = law.with_numbers(row[FIRST_NUMBER:]).starting(link, system.of_link(i, state))
+            found = system.law_of(row).starting(link, system.link_variables(i, state))
             mode += int(row[PLACE_VALUE]) * found
         return mode, state, np.append(memory, 0.0)
 
@@ -328,11 +291,8 @@ def frame_with_tendons(
     link = system.tendon_stretch(mode, state, 0.0)
     for i in range(count):
         row = system.row_of_link(i)
-        link_state = system.link_state(mode, row)
-        stored = law.with_numbers(row[FIRST_NUMBER:]).energy(
-            link_state, link, system.of_link(i, state)
-        )
-        row[REST_ENERGY] = stored
+        link_state, own = system.link_state(mode, row), system.link_variables(i, state)
+        row[REST_ENERGY] = system.law_of(row).energy(link_state, link, own)
     return replace(
         model,
         name="rocking frame with tendons",
@@ -343,8 +303,8 @@ def frame_with_tendons(
         ]),
         columns=(
             *model.columns,
-            *(Column(column_of(name, i), per_mass=name == LINK_COLUMNS[0])
-              for i in range(count) for name in LINK_COLUMNS),
+            *(Column(column_of(f"restrainer_{name}", i), per_mass=name == "force")
+              for i in range(count) for name in ("force", "elongation", "state")),
         ),
         memory=(*model.memory, "link_of_event"),
         links=count,

@@ -31,7 +31,7 @@ from rockframe.dynamics.chain.model import (
     visible_links,
 )
 from rockframe.dynamics.chain.rows import BODY_STRIDE
-from rockframe.dynamics.protocol import ContactModel, Energies, Ground, Guards, Slope, Start
+from rockframe.dynamics.protocol import ContactModel, Ground, Guards, Slope, Start
 from rockframe.dynamics.slide_motion import (
     COLUMNS,
     DOF,
@@ -45,7 +45,7 @@ from rockframe.dynamics.slide_motion import (
     SLIP,
     Loads,
 )
-from rockframe.dynamics.slide_rock import SlideRock, SlideSwitches, slide_rock
+from rockframe.dynamics.slide_rock import SlideRock, slide_rock
 from rockframe.dynamics.trigonometry import sine_cosine, versine
 from rockframe.dynamics.vibrations import greatest_eigenvalue
 
@@ -75,7 +75,7 @@ class TiedNumbers(NamedTuple):
     rows: Vector  # workspace of the block; then rows of the links and their workspace
 
 
-class TiedSlideRock(TiedNumbers, LinkMechanics, SlideSwitches):  # pyright: ignore[reportGeneralTypeIssues]
+class TiedSlideRock(TiedNumbers, LinkMechanics, SlideRock):  # pyright: ignore[reportGeneralTypeIssues]
     """A block on rigid ground with friction and links, per unit mass: a system."""
 
     __slots__ = ()
@@ -188,18 +188,6 @@ class TiedSlideRock(TiedNumbers, LinkMechanics, SlideSwitches):  # pyright: igno
         horizontal, rise = self.centre_acceleration(mode, state, slope)
         work[at.ACCELERATION_X], work[at.ACCELERATION_Y] = horizontal, rise
         work[at.ANGULAR_ACCELERATION] = slope[ROTATION]
-
-    @inlined
-    def switch_body(
-        self, mode: int, guard: int, state: Vector, ground: Ground, memory: Vector
-    ) -> int:
-        """Carry out the switch that a guard of the block calls for; return the new mode."""
-        return self.switch_contact(mode, guard, state, ground, memory)
-
-    @kernel
-    def energies_of_bodies(self, mode: int, state: Vector) -> Energies:
-        """Return the energies of the block."""
-        return self.energies_alone(mode, state)
 
     @kernel
     def observe_bodies(

@@ -59,7 +59,7 @@ class OwnScene(OwnAnswers, Setting):
         """
         if type(self).curve is OwnScene.curve:
             return 0.0
-        return self.least_overturning_energy()
+        return super().overturning_energy
 
     def curve(self, rotations: Sequence[float]) -> list[Statics | None]:
         """Return the quasi-static states at rotations [rad]; refused unless overridden."""

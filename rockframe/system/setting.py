@@ -160,8 +160,8 @@ class Setting(ABC):
 
     @cached_property
     def overturning_energy(self) -> float:
-        """Least energy that overturns the body slowly, to the weaker side [J]."""
-        return self.least_overturning_energy()
+        """Least work against restoring moments that overturns the body, to either side [J]."""
+        return min(work_against(self.restoring_moments, end) for end in self.overturning_rotations)
 
     @cached_property
     def joined_bodies(self) -> tuple[SupportedBody, ...]:
@@ -211,10 +211,6 @@ class Setting(ABC):
     def stored_energy(self, rotation: float) -> float:
         """Return the work that slowly brings the body from upright to a rotation [rad] [J]."""
         return work_to(self.restoring_moments, rotation)
-
-    def least_overturning_energy(self) -> float:
-        """Return the least work against restoring moments up to overturning, to either side [J]."""
-        return min(work_against(self.restoring_moments, end) for end in self.overturning_rotations)
 
     def held_at(self, rotations: Sequence[float]) -> list[Statics]:
         """Return the quasi-static states at rotations [rad]; see :func:`required_states`."""

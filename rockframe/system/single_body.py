@@ -76,7 +76,7 @@ class SingleBodySetting(Setting):
     def small_motion(self) -> SmallMotion:
         """Return the equations of small motion about rest, in the contact of the body at rest."""
         standing = self.support.standing
-        return standing.motion_of_single_body(standing.rest or standing.upright)
+        return standing.motion_of_single_body(standing.rest or [self.support.upright])
 
     def curve(self, rotations: Sequence[float]) -> list[Statics | None]:
         """Return the vertical equilibrium at some rotations, :eq:`eq-incline-held`."""

@@ -205,7 +205,7 @@ class StackSetting(StackedBodies):
         With rigid and deformable bases, that of the weakest rigid base, as if all were rigid.
         """
         if not any(self.rigid) or not self.groups:
-            return self.least_overturning_energy()
+            return super().overturning_energy
         return min(rocking_energy(self, k) for k, rigid in enumerate(self.rigid) if rigid)
 
     def curve(self, rotations: Sequence[float]) -> list[Statics | None]:

@@ -95,11 +95,6 @@ class StandingBodies:
         """Equilibrium of the bodies under their weight; None if there is none."""
         return self.chain.rest()
 
-    @cached_property
-    def upright(self) -> list[Pose]:
-        """Equilibrium with all bodies held upright."""
-        return self.chain.poses_at([0.0] * len(self.bases)) or []
-
     def held(self, rotations: Sequence[float]) -> list[Statics | None]:
         """Return states with the highest body held at rotations [rad]; None where none exists."""
         curve = self.chain.curve(rotations)

@@ -15,8 +15,16 @@ from rockframe.components import TwoSpringSupport, WinklerSoil
 from rockframe.components.bases import Separation
 from rockframe.dynamics.base_numbers import BaseNumbers, bed_numbers, pads_numbers, rigid_numbers
 from rockframe.dynamics.body import Body
-from rockframe.dynamics.body_statics import base_derivatives, standing_body, uplift_rotation
+from rockframe.dynamics.body_statics import (
+    Pose,
+    StandingBody,
+    base_derivatives,
+    equilibrium_pose,
+    standing_body,
+    uplift_rotation,
+)
 from rockframe.dynamics.on_base import BodyOnBase
+from rockframe.dynamics.protocol import CORNER_REACTIONS
 from rockframe.dynamics.single_body import eccentricity_of
 from rockframe.dynamics.statics import StandingChain
 from rockframe.system.bodies import BaseLoad, Restitutions, base_restitution, restitution_cautions
@@ -32,7 +40,7 @@ NO_VERTICAL_START: Final = (
     "InitialState: vertical_displacement and vertical_velocity need a base that gives way; on "
     "rigid ground they follow from the rotation"
 )
-REACTIONS: Final[tuple[str, ...]] = ("left_reaction", "right_reaction")
+REACTIONS: Final = tuple(one.name for one in CORNER_REACTIONS)
 
 
 def uplift_words(radians: float) -> str:
@@ -93,14 +101,12 @@ class Support(ABC):
     @property
     def settlement(self) -> float:
         """Delta, settlement under the weight [m]."""
-        return self.standing.chain.bodies[0].settlement
+        return self.carried.settlement
 
     @cached_property
     def uplift_angle(self) -> float:
         """Rotation at which contact is first lost; NaN if it never is [rad]."""
-        return uplift_rotation(
-            self.standing.chain.bodies[0], self.load.options.slope.normal_gravity
-        )
+        return uplift_rotation(self.carried, self.load.options.slope.normal_gravity)
 
     @abstractmethod
     def law(self, body: Body, mass: float, load_mass: float) -> BaseNumbers:
@@ -118,7 +124,7 @@ class Support(ABC):
 
     def at_rest(self) -> dict[str, float]:
         """Return settlement and reactions of the upright body at rest, by their schema names."""
-        shown = self.standing.reactions(self.standing.upright)
+        shown = self.standing.reactions([self.upright])
         return {self.settlement_name: self.settlement, **static_values(shown)}
 
     @abstractmethod
@@ -146,12 +152,21 @@ class Support(ABC):
         return required_states([rotation], self.standing.held([rotation]))[0]
 
     @cached_property
+    def carried(self) -> StandingBody:
+        """The body on it, per unit of its mass."""
+        body = self.load.rigid_body
+        return standing_body(BodyOnBase(body, self.base_numbers.law), offset=eccentricity_of(body))
+
+    @cached_property
+    def upright(self) -> Pose:
+        """Equilibrium of the body held upright."""
+        return equilibrium_pose(self.carried, 0.0, self.load.options.slope.normal_gravity)
+
+    @cached_property
     def standing(self) -> StandingBodies:
-        """Its body alone on it, by the law."""
-        body, numbers = self.load.rigid_body, self.base_numbers
-        link = standing_body(BodyOnBase(body, numbers.law), offset=eccentricity_of(body))
-        chain = StandingChain((link,), self.load.options.slope.along_gravity)
-        return StandingBodies(chain, self.load.body.mass, (numbers,))
+        """Statics of the body alone on it, by the law."""
+        chain = StandingChain((self.carried,), self.load.options.slope.along_gravity)
+        return StandingBodies(chain, self.load.body.mass, (self.base_numbers,))
 
     @cached_property
     def base_numbers(self) -> BaseNumbers:
@@ -171,7 +186,7 @@ class Support(ABC):
 
     def _slopes(self, name: str) -> tuple[float, float]:
         """Return moment and force against a unit of a coordinate or rate, of the upright body."""
-        return base_derivatives(self.standing.chain.bodies[0], self.standing.upright[0], name)
+        return base_derivatives(self.carried, self.upright, name)
 
     def vibrations(self, vertical: str, rocking: str) -> list[tuple[str, str]]:
         """Describe vertical vibration and, on a base stiff enough, rocking, by these titles."""

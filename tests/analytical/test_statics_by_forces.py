@@ -112,8 +112,7 @@ def test_held_body_matches_closed_forms(block, base, rotation):
 def test_force_slopes_match_declared_stiffnesses(block, base, rotation):
     """Sizes and steps of runs are scaled by these."""
     support = rf.System(BLOCKS[block], BASES[base], rotation=rotation).setting.support
-    numbers, standing = support.base_numbers, support.standing
-    link, pose = standing.chain.bodies[0], standing.upright[0]
+    numbers, link, pose = support.base_numbers, support.carried, support.upright
     slopes = np.array([base_derivatives(link, pose, name) for name in (*DISPLACEMENTS, *RATES)])
     h, g = support.load.body.centre_height, support.load.options.slope.normal_gravity
     vertical, turning = numbers.vertical_stiffness, numbers.rotational_stiffness
@@ -185,7 +184,7 @@ def test_stack_at_rest_has_zero_acceleration(block, inclination, restraint, rota
 @pytest.mark.parametrize("block", BLOCKS)
 def test_stored_energy_of_held_body_equals_work(block, base):
     setting = rf.System(BLOCKS[block], BASES[base]).setting
-    link = setting.support.standing.chain.bodies[0]
+    link = setting.support.carried
     body, law = link.part
     for share in (0.1, 0.3):
         angle = share * setting.overturning_angle

@@ -392,7 +392,7 @@ def test_possible_lift_off_before_landing_is_undecided(restraint):
         one = pad_prover(model.system, mode, state, still, options.slope, limits)
         one.contacts = law.Contacts(CLEARS, HOLDS)
         tall, wide = float(one.pads.height), float(one.pads.left)
-        rotation, falls, sunk = 1e-4, -0.3, float(one.pads.settlements[0])
+        rotation, falls, sunk = 1e-4, -0.3, float(one.pads.rest)
         height = sunk - tall * (1 - np.cos(rotation)) - wide * np.sin(rotation)
         depth = 2 * wide * np.sin(rotation)
         rises = depth * float(one.pads.stiffness) / float(one.pads.damping)

@@ -2,12 +2,12 @@
 
 from collections.abc import Callable
 from dataclasses import replace
+from typing import cast
 
 import numpy as np
 
 from rockframe.compiled import Vector
 from rockframe.dynamics.cascade.system import COLUMNS, Cascade
-from rockframe.dynamics.on_base import BodyOnBase
 from rockframe.dynamics.protocol import BODY_COLUMNS, HELD_PLACE, MEMORY, ContactModel, Start
 from rockframe.dynamics.single_body import SingleBody
 from rockframe.dynamics.stacked import CONTACTS
@@ -39,7 +39,8 @@ def cascade(
         Rotation of the first body at rest [rad].
     """
     ratio = first.mass / second.mass
-    system = Cascade(_part_of(second), _part_of(first), ratio, top, cap_centre, offset)
+    lower_part, upper_part = (cast("SingleBody", one.system).part for one in (first, second))
+    system = Cascade(upper_part, lower_part, ratio, top, cap_centre, offset)
     shown = len(BODY_COLUMNS)
     under = tuple(replace(column, mass_ratio=ratio) for column in first.columns[shown:])
 
@@ -69,13 +70,6 @@ def cascade(
         initial=initial,
         rounding=_rounding(first, second),
     )
-
-
-def _part_of(model: ContactModel) -> BodyOnBase:
-    if not isinstance(model.system, SingleBody):
-        msg = f"a cascade is made of two models of one body on a base, got {model.name!r}"
-        raise TypeError(msg)
-    return model.system.part
 
 
 def _interleaved(second: Vector, first: Vector) -> Vector:

@@ -12,7 +12,7 @@ from rockframe.dynamics.point_law import Viscoelastic
 ON_PADS: Final = 0
 ON_BED: Final = 1
 ON_RIGID: Final = 2  # a bed without stiffness: constraints hold its ends
-MAX_LAW_NUMBERS: Final = 12
+MAX_LAW_NUMBERS: Final = 10
 """Numbers of a law, as many as the longest takes, which is that of pads."""
 
 
@@ -30,8 +30,6 @@ class LawNumbers(NamedTuple):
     n7: float
     n8: float
     n9: float
-    n10: float
-    n11: float
 
 
 class AnyBase(Base, LawNumbers):
@@ -44,7 +42,7 @@ class AnyBase(Base, LawNumbers):
         """Return the pads."""
         return ElasticPads(
             Viscoelastic(self.n0, self.n1), self.n2, self.n3, self.n4, self.n5, self.n6, self.n7,
-            self.n8, self.n9, self.n10, self.n11,
+            self.n8, self.n9,
         )  # fmt: skip
 
     @inlined

@@ -10,7 +10,7 @@ from rockframe.compiled import inlined
 from rockframe.dynamics.body import Attitude, Reach
 from rockframe.dynamics.on_base import BodyOnBase
 from rockframe.dynamics.stacked import Modes, States
-from rockframe.dynamics.trigonometry import sine_cosine
+from rockframe.dynamics.trigonometry import sine_cosine, versine
 
 
 class Pair(NamedTuple):
@@ -130,11 +130,9 @@ def block_velocity(geometry: Configuration, states: States) -> tuple[float, floa
 def block_rise(geometry: Configuration, states: States) -> float:
     """Return the rise of the block's centre of mass from rest, without cancellation [m]."""
     s, c = geometry.sine, geometry.cosine
-    versine = s * s / (1.0 + c) if c > 0.0 else 1.0 - c
     normal = states.upper.vertical
-    return (
-        states.lower.vertical + normal * c - geometry.across * s - (geometry.arm - normal) * versine
-    )
+    drop = (geometry.arm - normal) * versine(s, c)
+    return states.lower.vertical + normal * c - geometry.across * s - drop
 
 
 @inlined

@@ -339,7 +339,7 @@ def _guard(
     )
     speed = curve(series.speeds[i], speed_away)
     if guard.kind in ("depth", "gap"):
-        level = curve(series.levels[i], level_away) - constant_curve(float(pads.settlements[i]))
+        level = curve(series.levels[i], level_away) - constant_curve(float(pads.rest))
         sign = 1.0 if guard.kind == "gap" else -1.0
         return level.times(sign), speed.times(sign * h)
     # accelerations of members differ by no more than the rate of change of their distances

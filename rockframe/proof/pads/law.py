@@ -101,9 +101,8 @@ class PadBalls(NamedTuple):
     middle: Ball  # middle of the base, to the right of the centre of mass
     stiffness: Ball  # of a pad
     damping: Ball
-    settlements: tuple[Ball, Ball]  # settlement at rest of the left and of the right pad
     restitutions: tuple[Ball, Ball]  # of a corner that lands on the left and on the right pad
-    rest: Ball  # settlement of a pad under half the weight
+    rest: Ball  # settlement of a pad under half the weight, height of its unloaded level
     rule: int  # rule of the restraint
     small: bool  # whether the kinematics are those of small rotation
     limits: tuple[Ball, Ball]  # rotations that count as overturning, to the left and to the right
@@ -186,7 +185,7 @@ def corner_motion(pads: PadBalls, left: bool, state: list[Any]) -> CornerMotion:
 
 def reaction(pads: PadBalls, left: bool, at: CornerMotion) -> Any:
     """Return the force of a pad on a corner if they touched, :eq:`eq-pad-force`."""
-    depth = pads.settlements[not left] - at.level
+    depth = pads.rest - at.level
     return depth * pads.stiffness - at.speed * pads.damping
 
 
@@ -250,9 +249,9 @@ def guard_value(pads: PadBalls, guard: Guard, state: list[Any]) -> Any:
         return state[0] + limit if guard.left else limit - state[0]
     at = corner_motion(pads, guard.left, state)
     if guard.kind == "depth":
-        return pads.settlements[not guard.left] - at.level
+        return pads.rest - at.level
     if guard.kind == "gap":
-        return at.level - pads.settlements[not guard.left]
+        return at.level - pads.rest
     if guard.kind == "rise":
         return at.speed
     force = reaction(pads, guard.left, at)
@@ -297,7 +296,7 @@ def _lift_off(
     at, own_guard = corner_motion(pads, left, state), Guard("gap", left)
     own = CLEAR
     if contacts.of(left) == TOUCHING and pads.damping > 0:
-        depth = (pads.settlements[not left] - at.level).value
+        depth = (pads.rest - at.level).value
         require(
             depth > pads.rest * _SEPARATION, "a corner that leaves its pad at the pad's own level"
         )

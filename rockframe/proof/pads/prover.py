@@ -318,14 +318,14 @@ class PadProver:
         energy = (pads.inertia * rate * rate + speed * speed + sway * sway) / 2
         energy = energy + pads.gravity * height
         for left in (True, False):
-            depth = pads.settlements[not left] - corner_motion(pads, left, state).level
+            depth = pads.rest - corner_motion(pads, left, state).level
             energy = energy + pads.stiffness * depth.nonnegative_part() ** 2 / 2
         sunk = pads.gravity / pads.stiffness
         for left in (True, False):
             limit = -pads.limits[0] if left else pads.limits[1]
             at = rotation_terms(pads, limit)
             below = at.rise + at.sine * (pads.left if left else -pads.right)
-            crest = pads.gravity * (pads.settlements[not left] - below - sunk / 2)
+            crest = pads.gravity * (pads.rest - below - sunk / 2)
             if not energy < crest:
                 return False
         return bool(-pads.limits[0] < rotation and rotation < pads.limits[1])
@@ -423,7 +423,7 @@ def _series(pads: PadBalls, guard: Guard, made: Step) -> Row:
     if guard.kind in ("depth", "gap"):
         sign = 1 if guard.kind == "gap" else -1
         first, *others = found.levels[i]
-        return [sign * (first - pads.settlements[i]), *(sign * one for one in others)]
+        return [sign * (first - pads.rest), *(sign * one for one in others)]
     if guard.kind == "rise":
         return found.speeds[i]
     sign = -1 if guard.kind == "slack" else 1

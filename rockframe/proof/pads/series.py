@@ -34,7 +34,7 @@ class SeriesNumbers(NamedTuple):
     inertia: Any
     stiffness: Any
     damping: Any
-    settlements: tuple[Any, Any]
+    settlement: Any
     pivot_offset: Any  # e, from below the centre of mass to the held point
 
 
@@ -106,7 +106,7 @@ def recursion(
             if contact == CLEAR:
                 continue
             if k or not forces:
-                depth = minus * levels[k] + (0 if k else numbers.settlements[i])
+                depth = minus * levels[k] + (0 if k else numbers.settlement)
                 forces.append(stiff * depth + minus * damped * speeds[k])
             if contact == TOUCHING:
                 upward = upward + forces[k]
@@ -172,7 +172,7 @@ def enclose_motion(
     offset = pivot_offset(pads, contacts) if not (contacts.in_flight or pads.small) else 0 * h
     numbers = SeriesNumbers(
         pads.height, (pads.left, pads.right), pads.inertia, pads.stiffness, pads.damping,
-        pads.settlements, offset,
+        pads.rest, offset,
     )  # fmt: skip
     ground = tuple(
         [one * h**k for k, one in enumerate(row)]

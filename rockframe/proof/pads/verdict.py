@@ -32,7 +32,6 @@ def pad_numbers(part: BodyOnBase, limits: OverturningAngles, inputs: Deviations)
     return PadBalls(
         ball(body.height), ball(body.left), ball(body.right), ball(body.inertia),
         ball(body.pin(PIVOT_CENTRE)), ball(base.law.stiffness), ball(base.law.damping),
-        (ball(base.left_settlement), ball(base.right_settlement)),
         (ball(base.left_restitution) + inputs.left_restitution,
          ball(base.right_restitution) + inputs.right_restitution),
         ball(base.rest), body.restraint, body.small, (ball(limits.left), ball(limits.right)),
