@@ -365,7 +365,11 @@ class Component(Immutable):
         -------
         tuple of str
         """
-        return tuple(name for name, value in self._arguments().items() if _leading_number(value))
+        return tuple(
+            name
+            for name, value in self._arguments().items()
+            if self._declared[name].single and _leading_number(value)
+        )
 
     def with_scaled(self, name: str, factor: float) -> Self:
         """Build a component with one argument multiplied by a factor.

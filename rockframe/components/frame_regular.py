@@ -83,6 +83,7 @@ class StoreyCount(Declared[int, Missing]):
 class StoreyHeights(Declared[Quantity, Missing]):
     """Heights of storeys: a sequence, or a text with semicolons between them."""
 
+    single = False
     written_as = "sequence of str or Quantity, or str"
     annotation = Iterable[QuantityLike]
 

@@ -101,7 +101,7 @@ def to_pelicun(
     Notes
     -----
     The format is that of pelicun 3: limit states in columns ``LS1-Family``, ``LS1-Theta_0``
-    (median) and ``LS1-Theta_1`` (dispersion), and so on.
+    (median) and ``LS1-Theta_1`` (dispersion), and so on, from the least median up.
 
     Examples
     --------
@@ -196,8 +196,8 @@ def to_openquake(
     SchemaError
         The datasets are not fragilities over one such measure.
     ComponentError
-        A limit state has no fit, or dispersion zero; limit states differ; or a name has characters
-        that OpenQuake does not allow.
+        A limit state has no fit, or dispersion zero; limit states, or the order of their medians,
+        differ; or a name has characters that OpenQuake does not allow.
     FileError
         The file cannot be written, its name has another ending, or it exists and this function
         did not write it.
@@ -238,7 +238,10 @@ def to_openquake(
     }
     names = {tuple(state for state, _, _ in states) for _, states in fitted.values()}
     if len(names) > 1:
-        msg = f"{_OPENQUAKE}: the fragilities must have the same limit states, got {sorted(names)}"
+        msg = (
+            f"{_OPENQUAKE}: the fragilities must have the same limit states, in the same order of "
+            f"their medians, got {sorted(names)}"
+        )
         raise ComponentError(msg)
     root = Tree.Element("nrml", xmlns=_NAMESPACE)
     model = Tree.SubElement(
@@ -280,7 +283,7 @@ def to_openquake(
 def _fitted_limit_states(
     value: object, measures: Mapping[str, Any], *, owner: str
 ) -> tuple[str, list[tuple[str, float, float]]]:
-    """Return measure of a fragility, and the name, median and dispersion of its limit states."""
+    """Return measure, and name, median and dispersion of limit states from the least median up."""
     dataset = checked_dataset(value, owner=owner)
     known = [name for name in measures if name in dataset.dims]
     if "median_intensity" not in dataset or len(known) != 1:
@@ -313,7 +316,8 @@ def _fitted_limit_states(
             )
             raise ComponentError(msg)
         found.append((name, float(one["median_intensity"]), float(one["dispersion"])))
-    return known[0], found
+    # both programs take the last limit state that is exceeded for the most severe one
+    return known[0], sorted(found, key=lambda state: state[1])
 
 
 def _period(dataset: xr.Dataset, owner: str) -> float:

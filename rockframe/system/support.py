@@ -189,18 +189,44 @@ class Support(ABC):
         return base_derivatives(self.carried, self.upright, name)
 
     def vibrations(self, vertical: str, rocking: str) -> list[tuple[str, str]]:
-        """Describe vertical vibration and, on a base stiff enough, rocking, by these titles."""
-        body, rate = self.load.body, self.vertical_frequency
+        """Describe vertical vibration and, on a base stiff enough, rocking, by these titles.
+
+        The first is that of the centre of mass without rotation, which defines frequency and
+        damping ratios of the base. The second is a mode, in which an eccentric body also rises.
+        """
+        rate = self.vertical_frequency
         found = [(vertical, "omega_v", rate, 0.5 * self._slopes("vertical_velocity")[1] / rate)]
-        if self.rocking_stiffness > 0.0:
-            rate = sqrt(self.rocking_stiffness / body.base_inertia)
-            damping = body.mass * self._slopes("angular_velocity")[0]
-            found.append((rocking, "omega_r", rate, 0.5 * damping / (body.base_inertia * rate)))
+        square, rise = self._rocking_mode()
+        if square > 0.0:
+            rate = sqrt(square)
+            turning, rising = (
+                self._slopes(name) for name in ("angular_velocity", "vertical_velocity")
+            )
+            damping = turning[0] + rise * (turning[1] + rising[0] + rise * rising[1])
+            inertia = self.load.body.base_inertia / self.load.body.mass + rise * rise
+            found.append((rocking, "omega_r", rate, 0.5 * damping / (inertia * rate)))
         return [
             (title, f"{symbol} = {rate:.6g} rad/s (period {2.0 * math.pi / rate:.6g} s), damping "
              f"ratio {ratio:.6g}")
             for title, symbol, rate, ratio in found
         ]  # fmt: skip
+
+    def _rocking_mode(self) -> tuple[float, float]:
+        """Return the square of its frequency without damping [rad^2 s^-2] and its rise [m].
+
+        The rise of the centre of mass is that with a unit of rotation.
+        """
+        turning, rising = (self._slopes(name) for name in ("rotation", "vertical"))
+        inertia = self.load.body.base_inertia / self.load.body.mass
+        alone = turning[0] / inertia, rising[1]
+        coupling = rising[0] * turning[1] / inertia
+        if coupling == 0.0:
+            return alone[0], 0.0
+        apart = alone[0] - alone[1]
+        square = alone[0] + 2.0 * coupling / (
+            apart + math.copysign(math.sqrt(apart * apart + 4.0 * coupling), apart)
+        )
+        return square, turning[1] / (square - alone[1])
 
 
 @dataclass(frozen=True)

@@ -63,7 +63,7 @@ def to_si(
         return _check_value(number, value, condition, owner=owner, name=name)
     argument = _parse(value, measure, owner=owner, name=name)
     _check_kind(argument, value, measure, owner=owner, name=name)
-    magnitude = _si_magnitude(argument, measure)
+    magnitude = _si_magnitude(argument, str(measure.unit))
     if not isinstance(magnitude, Real) and getattr(magnitude, "ndim", 1) != 0:
         msg = (
             f"{owner}: {name} needs {measure.name}, one value only, got {short_repr(value)}; "
@@ -171,9 +171,9 @@ def _float(number: Real) -> float:
         return math.inf
 
 
-def _si_magnitude(value: Any, measure: Measure) -> Any:
-    """Convert a magnitude to SI units; a single number without rounding by the factor."""
-    unit, number = str(measure.unit), value.magnitude
+def _si_magnitude(value: Any, unit: str) -> Any:
+    """Convert a magnitude to an SI unit; a single number without rounding by the factor."""
+    number = value.magnitude
     if getattr(number, "ndim", None) == 0:  # other registries may make arrays of single numbers
         number = number.item()
     if not isinstance(number, int | float):
@@ -227,8 +227,7 @@ def to_ratio(
     if isinstance(value, str | pint.Quantity):
         argument = _parse(value, ratio, owner=owner, name=name)
         _check_kind(argument, value, ratio, owner=owner, name=name)
-        magnitude: Any = argument.m_as("")
-        number = magnitude.item() if getattr(magnitude, "ndim", 1) == 0 else magnitude
+        number = _si_magnitude(argument, "")
     if isinstance(number, bool) or not isinstance(number, Real):
         msg = (
             f"{owner}: {name} needs a pure ratio (a bare number), got {short_repr(value)}; "

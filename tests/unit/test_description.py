@@ -3,7 +3,9 @@
 import math
 import re
 
+import numpy as np
 import pytest
+from scipy import linalg
 from unit.usual_scenes import SCENES, assembled, block, cap, pads, soil
 
 import rockframe as rf
@@ -52,24 +54,31 @@ class TestDescription:
         assert states == ["full", "left", "right", "flight", "impact"]
 
     @pytest.mark.parametrize("base", [pads, soil])
-    def test_rocking_damping_ratio_of_an_eccentric_base(self, base):
-        """Springs and dashpots have the same levers about the foot of the centre of mass."""
-        part, e = base(), 0.1
+    def test_rocking_mode_of_an_eccentric_body(self, base):
+        """As it rocks about the middle of its base, its centre of mass rises and falls."""
+        part, b, e, mass = base(), 1.0, 0.1, 5e4
         eccentric = block(centre_of_mass=("4 m", f"{e} m"))
-        support = rf.System(eccentric, part).setting.support
-        b, inertia = 1.0, eccentric.si.inertia + 5e4 * 4.0**2
-        left, right = b + e, b - e
-        if base is pads:
-            springs = support.stiffness * (left**2 + right**2)
-            dashpots = support.damping * (left**2 + right**2)
-        else:
-            springs = support.stiffness * (left**3 + right**3) / 3.0
-            dashpots = support.damping * (left**3 + right**3) / 3.0
-        rate = math.sqrt((springs - 5e4 * 9.80665 * 4.0) / inertia)
-        text = rf.System(eccentric, part).describe()
-        ratio = dashpots / (2.0 * inertia * rate)
-        match = re.search(r"omega_r = (\S+) rad/s .*?damping ratio (\S+)", text, re.DOTALL)
-        assert match.groups() == (f"{rate:.6g}", f"{ratio:.6g}")
+        system = rf.System(eccentric, part)
+        support = system.setting.support
+        # about the foot of the centre of mass: rise, and rotation
+        matrix = np.array([[2.0, -2.0 * e], [-2.0 * e, 2.0 * (b * b + e * e)]])
+        if base is soil:
+            matrix = np.array(
+                [[2.0 * b, -2.0 * b * e], [-2.0 * b * e, 2.0 * b * (b * b / 3 + e * e)]]
+            )
+        inertias = np.diag([mass, eccentric.si.inertia + mass * 4.0**2])
+        springs, dashpots = support.stiffness * matrix, support.damping * matrix
+        springs[1, 1] -= mass * 9.80665 * 4.0
+        squares, shapes = linalg.eigh(springs, inertias)
+        rate, shape = math.sqrt(squares[0]), shapes[:, 0]
+        ratio = shape @ dashpots @ shape / (2.0 * rate)
+        match = re.search(
+            r"omega_r = (\S+) rad/s .*?damping ratio (\S+)", system.describe(), re.DOTALL
+        )
+        assert [float(one) for one in match.groups()] == pytest.approx([rate, ratio], rel=1e-5)
+        mode = system.frequencies().isel(mode=0)
+        found = [mode.angular_frequency.item(), mode.damping_ratio.item()]
+        assert found == pytest.approx([rate, ratio], rel=1e-3)
 
     def test_describes_rigid_ground(self):
         text = rf.System(block()).describe()

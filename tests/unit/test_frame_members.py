@@ -91,6 +91,7 @@ def test_equal_storeys_may_be_listed_individually():
         assert listed.members == equal.members
     one = RegularFrame(**UNEQUAL, storey_heights=pint.Quantity(4.0, "m"))
     assert one.storeys == 1
+    assert "storey_heights" not in one.parameters()  # no single number that could be scaled
     assert len([member for member in one.members if member.kind == "wall"]) == 2
 
 

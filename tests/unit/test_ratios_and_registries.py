@@ -41,6 +41,12 @@ def test_a_ratio_may_be_bare_or_dimensionless(value, expected):
     assert make_pads(frequency_ratio=value).si.frequency_ratio == pytest.approx(expected)
 
 
+def test_per_cent_are_not_rounded():
+    """35 times the float 0.01 is 0.35000000000000003."""
+    for share in range(1, 100):
+        assert make_pads(damping_ratio=f"{share} %") == make_pads(damping_ratio=share / 100)
+
+
 def test_a_ratio_may_be_a_quantity_of_any_registry():
     for registry in (pint.get_application_registry(), FOREIGN):
         for magnitude in (20, 20.0, np.float64(20.0), np.array(20.0)):

@@ -391,6 +391,21 @@ def test_pelicun_export_writes_one_row(runs):
         rf.export.to_pelicun(rf.fragility(runs, "CAV", limits=()), "x")
 
 
+def test_exports_sort_limit_states_by_their_medians(runs, tmp_path):
+    """Both programs take the last limit state that is exceeded for the most severe one."""
+    found = rf.fragility(runs, "PGA", limits=[0.3])
+    backwards = found.isel(limit_state=[1, 0])
+    assert found.median_intensity[0] < found.median_intensity[1]
+    pd.testing.assert_frame_equal(
+        rf.export.to_pelicun(backwards, "x"), rf.export.to_pelicun(found, "x")
+    )
+    first, second = (
+        rf.export.to_openquake({"x": one}, tmp_path / f"{k}.xml").read_text()
+        for k, one in enumerate((found, backwards))
+    )
+    assert first == second
+
+
 def test_openquake_reads_the_same_probabilities(runs, tmp_path):
     nrml = pytest.importorskip("openquake.hazardlib.nrml", reason="needs openquake.engine")
     pytest.importorskip("openquake.risklib.read_nrml", reason="needs openquake.engine")
