@@ -118,7 +118,8 @@ class Block(Component):
     )
     eccentricity = Parameter(
         LENGTH.like("0.1 m"),
-        doc="Distance of the centre of mass to the right of the middle of the base.",
+        doc="Distance of the centre of mass to the right of the middle of the base; 0 unless "
+        "given.",
         default=DERIVED,
     )
 

@@ -262,14 +262,14 @@ def unused_option_cautions(parts: Parts, options: Options) -> list[str]:
     bases = (*parts.structural(), *between)
     if options.coupling is not Coupling.COUPLED and not {"pads", "cap", "soil"} <= parts.signature:
         messages.append(
-            f"coupling={str(options.coupling)!r} changes nothing here: it is how pads, a "
-            "CushionCap and soil are joined, and the scene has not all of them"
+            f"coupling={str(options.coupling)!r} changes nothing here: it joins pads, a "
+            "CushionCap and soil, and the scene does not have all of them"
         )
     yielding = any(slot_of_class(type(part)) in ("pads", "soil") for part in bases)
     if options.restraint is not Restraint.CONTACT_STATE and not yielding and not parts.own:
         messages.append(
-            f"restraint={str(options.restraint)!r} changes nothing here: on rigid ground it is the "
-            "corner that bears which is held"
+            f"restraint={str(options.restraint)!r} changes nothing here: on rigid ground the "
+            "bearing corner is held"
         )
     has_friction = any(getattr(part.si, "friction", None) is not None for part in bases)
     if options.sliding is Sliding.CHECKED and not has_friction and not parts.own:

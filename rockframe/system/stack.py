@@ -279,7 +279,7 @@ def refuse_options(what: str, options: Options, *, small: bool) -> None:
     if options.inclination != 0.0:
         faults.append(f"{what} stands on level ground: inclination must be zero")
     if options.small and not small:
-        faults.append(f"{what} rotates as far as it does: give rotation='finite'")
+        faults.append(f"{what} needs rotation='finite'")
     if faults:
         raise AssemblyError(faults)
 

@@ -128,8 +128,8 @@ def confusion(bench: Bench, studies: Studies, report: Report) -> None:
     both = {name: np.concatenate(verdicts) for name, verdicts in every.items()}
     rows += [_confusion_row("both", name, said, fell, drawn) for name, said in both.items()]
     head = (
-        "specimen", "by", "fell, as said", "fell, unsaid", "stood, unsaid", "stood, as said",
-        "accuracy", "balanced accuracy",
+        "specimen", "by", "fell, as predicted", "fell, predicted to stand",
+        "stood, predicted to fall", "stood, as predicted", "accuracy", "balanced accuracy",
     )  # fmt: skip
     report.add("confusion", head, rows)
     held = [f"{name}, held out" for name in ("block", "ensemble", "regression")]

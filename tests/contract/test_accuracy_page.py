@@ -43,7 +43,7 @@ def _check_bound(name, bound, side, **others):
 
 @pytest.mark.parametrize("level", LEVELS)
 def test_documented_run_is_reproduced(level):
-    head = "| level | steps | rejected | energy residual | error of the peak rotation |"
+    head = "| level | steps | rejected | energy residual | relative error of the peak rotation |"
     rows = {name: [float(cell) for cell in cells] for name, *cells in table(PAGE, head)}
     steps, rejected, residual, error = rows[level]
     run, exact = (

@@ -1,4 +1,4 @@
-"""The page "The code in ten minutes" lists all rooms, and which uses which."""
+"""The page "The code in ten minutes" lists all packages, and which uses which."""
 
 import ast
 import importlib
@@ -9,14 +9,14 @@ from pages import read, table
 
 PACKAGE = Path(__file__).resolve().parents[2] / "rockframe"
 PAGE = "development/house.md"
-HEAD = "| room | what it is for | what others take from it | rooms that it uses |"
-ROOMS = {path.parent.name for path in PACKAGE.glob("*/__init__.py")}
+HEAD = "| package | what it is for | what others take from it | packages that it uses |"
+PACKAGES = {path.parent.name for path in PACKAGE.glob("*/__init__.py")}
 
 
-def rooms_used_by(room):
-    """Return the rooms from which the files of a room import."""
+def packages_used_by(package):
+    """Return the packages from which the files of a package import."""
     found = set()
-    for file in (PACKAGE / room).rglob("*.py"):
+    for file in (PACKAGE / package).rglob("*.py"):
         for node in ast.walk(ast.parse(file.read_text(encoding="utf-8"))):
             if isinstance(node, ast.ImportFrom) and node.module == "rockframe":
                 found |= {alias.name for alias in node.names}
@@ -26,7 +26,7 @@ def rooms_used_by(room):
                 found |= {
                     alias.name.split(".")[1] for alias in node.names if "rockframe." in alias.name
                 }
-    return found & ROOMS - {room}
+    return found & PACKAGES - {package}
 
 
 def rows():
@@ -34,27 +34,27 @@ def rows():
 
 
 def test_every_subpackage_is_listed_and_drawn():
-    assert set(rows()) == ROOMS, f"give each room a row of the table in docs/{PAGE}, and no other"
+    assert set(rows()) == PACKAGES, f"list these packages in docs/{PAGE}, and no others"
     figure = read(PAGE).split("```text\n", 1)[1].split("```", 1)[0]
-    assert set(figure.split()) >= ROOMS, f"draw each room in the figure of docs/{PAGE}"
+    assert set(figure.split()) >= PACKAGES, f"draw each package in the figure of docs/{PAGE}"
 
 
-@pytest.mark.parametrize("room", sorted(ROOMS))
-def test_documented_dependencies_match_imports(room):
-    written = {one.strip() for one in rows()[room][2].split(",") if one.strip()}
-    assert written == rooms_used_by(room), f"write these rooms in the row of {room} in docs/{PAGE}"
+@pytest.mark.parametrize("package", sorted(PACKAGES))
+def test_documented_dependencies_match_imports(package):
+    written = {one.strip() for one in rows()[package][2].split(",") if one.strip()}
+    assert written == packages_used_by(package), f"correct the row of {package} in docs/{PAGE}"
 
 
-@pytest.mark.parametrize("room", sorted(ROOMS))
-def test_documented_exports_exist(room):
-    modules = [importlib.import_module(f"rockframe.{room}"), *_files(room)]
-    for name in rows()[room][1].replace("`", "").split(","):
+@pytest.mark.parametrize("package", sorted(PACKAGES))
+def test_documented_exports_exist(package):
+    modules = [importlib.import_module(f"rockframe.{package}"), *_files(package)]
+    for name in rows()[package][1].replace("`", "").split(","):
         assert any(hasattr(module, name.strip()) for module in modules), (
-            f"docs/{PAGE} says that others take {name.strip()} from {room}, which has no such name"
+            f"docs/{PAGE}: {package} has no {name.strip()}"
         )
 
 
-def _files(room):
-    for file in sorted((PACKAGE / room).glob("*.py")):
+def _files(package):
+    for file in sorted((PACKAGE / package).glob("*.py")):
         if file.stem != "__init__":
-            yield importlib.import_module(f"rockframe.{room}.{file.stem}")
+            yield importlib.import_module(f"rockframe.{package}.{file.stem}")

@@ -344,6 +344,12 @@ def test_long_names_are_unique():
     assert len(set(words)) == len(words)
 
 
+def test_long_names_stand_alone():
+    other_row = r"\b(which it does|on it does|the same of|its rate|(error|bound|period) of that)\b"
+    words = {name: row.long_name for name, row in SCHEMA.items()}
+    assert [name for name, said in words.items() if re.search(other_row, said)] == []
+
+
 def test_flags_follow_cf():
     for name, row in SCHEMA.items():
         attributes = row.attributes()

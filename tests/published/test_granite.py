@@ -15,8 +15,8 @@ import rockframe as rf
 PAGE = "validation_granite.md"
 TABLES = "validation_granite.txt"
 CONFUSION = (
-    "| specimen | by | fell, as said | fell, unsaid | stood, unsaid | stood, as said "
-    "| accuracy | balanced accuracy |"
+    "| specimen | by | fell, as predicted | fell, predicted to stand | stood, predicted to fall "
+    "| stood, as predicted | accuracy | balanced accuracy |"
 )
 
 

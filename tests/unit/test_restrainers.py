@@ -101,6 +101,18 @@ def test_what_makes_no_scene_is_refused(parts, words):
 
 
 @pytest.mark.parametrize(
+    ("options", "words"),
+    [
+        ({"rotation": "small"}, "a block with restrainers needs rotation='finite'"),
+        ({"inclination": "1 deg"}, "a block with restrainers stands on level ground"),
+    ],
+)
+def test_options_without_equations_are_refused(options, words):
+    with pytest.raises(AssemblyError, match=words):
+        rf.System(BLOCK, PADS, TIE, **options)
+
+
+@pytest.mark.parametrize(
     "link",
     [TIE.replace(on=("-0.5 m", "4.1 m")), TIE.replace(on=("-5 m", "3 m")),
      rf.Load(at=("0 m", "-0.1 m"), moving_mass="1 t")],

@@ -45,7 +45,7 @@ LONGEST_DURATION: Final = 1_000.0
 
 TWO_CORNERS_FROM: Final = 6.0
 """Magnitude from which on a source has two corner frequencies by default [1]. Above it, spectra of
-one corner are 1.1 to 2.2 times those of recorded motions at 1 s to 5 s, those of two 0.7 to 1.5
+one corner are 1.2 to 2.2 times those of recorded motions at 1 s to 5 s, those of two 0.7 to 1.5
 times."""
 
 _DISTANCE: Final = Measure("a distance", Unit.METRE, "15 km")

@@ -48,8 +48,8 @@ DYNAMIC_ANALYSIS: Final = (
         flip_count=("number of changes of the verdict that were found", int),
         capacity_scale="least scale of the motion that was found to exceed the limit state, "
         "infinite if none",
-        capacity_resolution="widest range of scales, over its upper end, that may exceed unseen "
-        "below the capacity",
+        capacity_resolution="widest gap between runs below the capacity, over its upper end, in "
+        "which the limit state may be exceeded undetected",
         censored_count=("number of motions under which no scale exceeded the limit state", int),
     ),
 )
@@ -67,8 +67,7 @@ FRACTILES: Final = (
     *rows_over(("response_level",), response_level="level of the response"),
     *rows_over(
         (),
-        intensity_fractile="intensity by which this share of the motions has first reached the "
-        "level",
+        intensity_fractile="intensity up to which this share of the motions has reached the level",
         unreached_count=("number of motions that never reach the level", int),
     ),
 )
@@ -89,7 +88,7 @@ FRAGILITY: Final = (
         **bounds("dispersion", "{} bound of the dispersion, of nominal confidence"),
         dispersion_error="standard error of the dispersion",
         trial_count=("number of runs, or of capacities, that count", int),
-        left_out_count=("number of those left out, without a result that counts", int),
+        left_out_count=("number of runs, or of capacities, without a usable result", int),
         independent_count=("number of motions, or of trials, that are independent", int),
         below_scan_count=("number of capacities at or below the least scale of the scan", int),
         exceedance_probability="probability that the limit state is exceeded",
@@ -97,7 +96,7 @@ FRAGILITY: Final = (
     ),
     *rows_over(
         COEFFICIENT,
-        coefficient=("what a coefficient of the fit stands before", str),
+        coefficient=("term of the fit that a coefficient multiplies", str),
         fitted_coefficient="coefficient before the logarithm of an intensity in SI units, or the "
         "intercept",
         fitted_coefficient_error="standard error of the coefficient",
@@ -123,13 +122,14 @@ CLOUD: Final = (
         (),
         regression_intercept="logarithm of the response at an intensity of one, both in SI units",
         regression_slope="power of the intensity with which the response grows",
-        regression_slope_error="standard error of that power",
+        regression_slope_error="standard error of the power of the intensity",
         residual_dispersion="standard deviation of the logarithm of the response at an intensity",
-        determination="share of the variance of the logarithms that the line tells",
+        determination="share of the variance of the logarithm of the response that the line "
+        "explains",
         logistic_intercept="intercept of the logistic curve of overturning",
         logistic_slope="slope of the logistic curve of overturning over the logarithm of the "
         "intensity",
-        logistic_slope_error="standard error of that slope",
+        logistic_slope_error="standard error of the slope of the logistic curve",
         cloud_overturned_count=("number of runs that overturned", int),
         resting_count=("number of runs without a response", int),
         response_limit="level of the response, infinite for overturning",
@@ -144,7 +144,7 @@ CLOUD: Final = (
 
 MEASURE_COMPARISON: Final = (
     *rows_over(("measure",), measure=("intensity measure", str)),
-    *rows_over(COVARIATE, covariate=("what a response may depend on too", str)),
+    *rows_over(COVARIATE, covariate=("further property on which the response may depend", str)),
     *rows_over((), efficiency_ratio="dispersion of the response over the power it grows with"),
     *rows_over(
         COVARIATE,
@@ -154,9 +154,10 @@ MEASURE_COMPARISON: Final = (
     ),
     *rows_over(
         (),
-        relative_sufficiency="information that the measure gives on the runs more than the first, "
-        "in bits a run",
-        relative_sufficiency_error="standard error of that information",
+        relative_sufficiency="information on the runs that the measure gives in addition to the "
+        "first measure, in bits per run",
+        relative_sufficiency_error="standard error of the information in addition to the first "
+        "measure",
         line_count=("number of runs that moved and did not overturn", int),
     ),
 )
@@ -166,20 +167,21 @@ HAZARD: Final = (
     *rows_over(
         (),
         annual_rate="number of times a year that the limit state is exceeded on average",
-        **bounds("annual_rate", "the same of the {} bound of the fragility"),
-        unreached_rate_below="annual rate that arises below the hazard curve, if it goes on as it "
-        "ends",
-        unreached_rate_above="annual rate that arises above the hazard curve, if it goes on as it "
-        "ends",
-        outside_trials_share="share of the annual rate that arises at intensities beyond those of "
-        "all trials",
+        **bounds("annual_rate", "annual rate by the {} bound of the fragility"),
+        unreached_rate_below="annual rate from intensities below the hazard curve, if its first "
+        "power law continues",
+        unreached_rate_above="annual rate from intensities above the hazard curve, if its last "
+        "power law continues",
+        outside_trials_share="share of the annual rate from intensities beyond those of all trials",
     ),
     *rows_over(
         ("contributing_intensity",),
         contributing_intensity="middle of a range of intensities, in the unit of the measure",
-        rate_share="share of the rate that arises in the range of intensities",
+        rate_share="share of the rate from the range of intensities",
     ),
-    *rows_over(QUANTILE, quantile_intensity="intensity below which that share of it arises"),
+    *rows_over(
+        QUANTILE, quantile_intensity="intensity below which a given share of the annual rate arises"
+    ),
 )
 """Of limit states at a site."""
 
@@ -220,16 +222,20 @@ PROBABILITY: Final = (
     *rows_over(
         (),
         overturning_probability="share of the cases that overturned",
-        **bounds("overturning_probability", "{} confidence bound of that share"),
+        **bounds(
+            "overturning_probability", "{} confidence bound of the probability of overturning"
+        ),
         verdict_count=("number of cases with a verdict", int),
     ),
     *rows_over(
         PARAMETER,
-        parameter=("what is spread", str),
-        first_order_index="share of the verdict's variance that knowing the parameter takes away",
-        verdict_distance="greatest difference of the parameter's distributions in cases that "
-        "overturn and stand",
-        chance_probability="probability of shares as uneven if the parameter did not matter",
+        parameter=("uncertain parameter", str),
+        first_order_index="share of the variance of the verdict that would vanish if the parameter "
+        "were known",
+        verdict_distance="greatest difference between the distributions of the parameter in cases "
+        "that overturn and in cases that stand",
+        chance_probability="probability of such a dependence by chance, if the parameter did not "
+        "matter",
     ),
 )
 """Of overturning, where parameters are spread."""
@@ -238,8 +244,8 @@ SUBSETS: Final = (
     *rows_over(
         LEVEL,
         sampling_level=("number of the level", int),
-        demand_threshold="demand from which on samples count; of the last level that of the limit "
-        "state",
+        demand_threshold="demand that samples of the level must reach; at the last level that of "
+        "the limit state",
         conditional_probability="share of the samples that reach the threshold",
         acceptance_rate="share of the candidates of the chains that were accepted, NaN where there "
         "are no chains",
@@ -248,13 +254,14 @@ SUBSETS: Final = (
     *rows_over(
         (),
         demand="response over its limit, infinite where the block overturns",
-        sample_level=("level that the sample is of", int),
-        sample_weight="probability that the sample stands for",
-        coefficient_of_variation="standard deviation of the estimated probability over it, "
-        "infinite where it is 0",
+        sample_level=("level to which the sample belongs", int),
+        sample_weight="probability that the sample represents",
+        coefficient_of_variation="standard deviation of the estimated probability over this "
+        "probability, infinite where it is 0",
         run_count=("number of runs", int),
         family_count=(
-            "number of samples of the first level from which those that exceed descend",
+            "number of samples of the first level from which the samples that reach the limit "
+            "descend",
             int,
         ),
     ),
@@ -271,8 +278,8 @@ ENSEMBLE: Final = (
     ),
     *rows_over(
         QUANTILE,
-        quantile="share of the distribution below",
-        quantile_value="value below which that share lies",
+        quantile="share of the distribution below the quantile",
+        quantile_value="value below which a given share of the distribution lies",
         **bounds("quantile_value", "{} confidence bound of the quantile"),
     ),
     *rows_over((), member_count=("number of members of the ensemble", int)),

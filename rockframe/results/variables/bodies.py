@@ -13,15 +13,17 @@ BODIES: Final = (
     *rows_over(
         BODY_TIME,
         body_rotation="rotation of each body, clockwise [rad]",
-        body_angular_velocity="its rate, of each body [rad s^-1]",
+        body_angular_velocity="rate of the rotation of each body [rad s^-1]",
         body_horizontal_displacement="horizontal displacement of each centre of mass from rest, "
         "relative to the ground [m]",
         body_vertical_displacement="vertical displacement of each centre of mass from rest, "
         "relative to the ground [m]",
         body_rotation_on_base="rotation of each body on the one below [rad]",
-        body_horizontal_reaction="force of what each body stands on, along that, to the right [N]",
-        body_vertical_reaction="force of what each body stands on, normal to that, upwards [N]",
-        body_slip="slip of each body on what it stands on [m]",
+        body_horizontal_reaction="force of its support on each body, along the support, to the "
+        "right [N]",
+        body_vertical_reaction="force of its support on each body, normal to the support, upwards "
+        "[N]",
+        body_slip="slip of each body on its support [m]",
         body_contact_state=("part of the base of each body that bears", ContactState),
     ),
     *rows_over(

@@ -87,7 +87,7 @@ DIRECTIONS: Final = (
 
 RECORDS: Final = rows_over(
     (),
-    record=("components of one name were recorded together", str),
+    record=("name of the record, common to components recorded together", str),
     axis=("place in the record: H1, H2 or V", str),
     record_sequence_number="number of the record in the NGA databases",
     event=("earthquake", str),
@@ -98,7 +98,7 @@ RECORDS: Final = rows_over(
     component=("component by the name in its file", str),
     azimuth="direction of the component, clockwise from north [rad]",
     rupture_distance="closest distance to the rupture [m]",
-    joyner_boore_distance="closest distance to the rupture seen from above [m]",
+    joyner_boore_distance="closest distance to the projection of the rupture on the surface [m]",
     shear_wave_velocity_30="shear-wave velocity of the uppermost 30 m, averaged over the time of "
     "travel [m s^-1]",
     lowest_usable_frequency="frequency below which the record is not usable [Hz]",
@@ -127,16 +127,15 @@ RECORDS: Final = rows_over(
     pulse_indicator_after_matching="pulse indicator of Baker after the spectrum was matched",
     spectral_growth_beyond_range="greatest ratio of matched to scaled spectrum beyond the range of "
     "periods",
-    period_of_spectral_growth="period of that ratio [s]",
+    period_of_spectral_growth="period of the greatest ratio of matched to scaled spectrum [s]",
 )
 """Of a motion in a suite; in datasets over ``motion``."""
 
 TARGETS: Final = (
     *rows_over(
         PERIOD,
-        target_spectral_acceleration="pseudo-spectral acceleration that is aimed at [m s^-2]",
-        target_standard_deviation="standard deviation of the logarithm of the spectrum that is "
-        "aimed at",
+        target_spectral_acceleration="pseudo-spectral acceleration of the target [m s^-2]",
+        target_standard_deviation="standard deviation of the logarithm of the target spectrum",
         scaled_spectral_acceleration="pseudo-spectral acceleration of the scaled motion [m s^-2]",
         set_median_acceleration="geometric mean over the set of the scaled pseudo-spectral "
         "accelerations [m s^-2]",

@@ -113,18 +113,20 @@ FORCE_SCALARS: Final = rows_over(
     (),
     peak_friction_demand="largest friction demand up to overturning",
     peak_friction_demand_time="time of the largest friction demand [s]",
-    peak_friction_demand_duration="time in all with a friction demand above half its peak, or "
-    "above 1 where that is less [s]",
+    peak_friction_demand_duration="total time with a friction demand above half its peak, or above "
+    "1 if the peak is beyond 2 [s]",
     peak_impulsive_friction_demand="largest ratio of impulses along and normal to the base, of "
     "impacts",
     peak_base_shear="largest absolute base shear up to overturning [N]",
     residual_rotation="rotation at the end of the run [rad]",
-    residual_settlement="how much lower than at rest the middle of the base stands at the end of "
-    "the run [m]",
-    peak_settlement="how much lower than at rest the middle of the base stands at most, up to "
+    residual_settlement="displacement of the middle of the base below its place at rest, at the "
+    "end of the run [m]",
+    peak_settlement="largest displacement of the middle of the base below its place at rest, up to "
     "overturning [m]",
-    would_slide=("whether the friction demand exceeds the coefficient that a base was given", bool),
-    sliding_time="time from which on it does, NaN if it never does [s]",
-    sliding_duration="time in all for which it does [s]",
+    would_slide=("whether the friction demand exceeds the coefficient of friction of a base", bool),
+    sliding_time="first time at which the friction demand exceeds the coefficient of friction, NaN "
+    "if none [s]",
+    sliding_duration="total time in which the friction demand exceeds the coefficient of friction "
+    "[s]",
 )
 """Scalars of runs with histories or points; the last three need a base with a given friction."""

@@ -44,7 +44,7 @@ HISTORIES: Final = rows_over(
     contact_state=("corner that bears", ContactState),
     ground_acceleration="horizontal ground acceleration [m s^-2]",
     vertical_ground_acceleration="vertical ground acceleration, upwards [m s^-2]",
-    base_shear="horizontal force of the ground on what stands on it, to the right [N]",
+    base_shear="horizontal force of the ground on all bodies above it, to the right [N]",
     left_reaction="reaction of the base at the left corner [N]",
     right_reaction="reaction of the base at the right corner [N]",
     # soil and cap
@@ -127,7 +127,8 @@ EVENTS_AND_SCALARS: Final = (
 CERTIFICATE: Final = rows_over(
     (),
     verdict_converged=(
-        "whether runs of higher accuracy have the same verdict, by more than they differ",
+        "whether runs of higher accuracy have the same verdict, with a margin of more than their "
+        "differences",
         bool,
     ),
     verdict_robust=(
@@ -148,9 +149,10 @@ CERTIFICATE: Final = rows_over(
 PROOF: Final = rows_over(
     (),
     verdict_proved=("whether the verdict is proved", bool),
-    proved_overturning_earliest="time before which it is proved not to have overturned, NaN unless "
-    "it is proved to [s]",
-    proved_overturning_latest="time by which it is proved to have overturned, NaN unless it is [s]",
+    proved_overturning_earliest="time before which the block is proved not to overturn, NaN unless "
+    "it is proved to overturn [s]",
+    proved_overturning_latest="time by which the block is proved to have overturned, NaN unless it "
+    "is proved to overturn [s]",
     proof_width="greatest radius of the rotations that a proof encloses [rad]",
 )
 """Proof of the verdict, on request."""

@@ -60,11 +60,11 @@ SWEEP: Final = (
         (),
         message=("message about the case, none if there is none", str),
         repeated=(
-            "whether the case was run again with adaptive steps, its verdict at fixed steps being "
-            "in doubt",
+            "whether the case was run again with adaptive steps, since its verdict at fixed steps "
+            "was not certain",
             bool,
         ),
-        verdict_changed=("whether the case then had another verdict", bool),
+        verdict_changed=("whether the repeated run of the case had another verdict", bool),
     ),
 )
 """Variables of a sweep, beside the scalars of its runs."""
@@ -116,7 +116,7 @@ FREE_DECAY: Final = (
         initial_rotation_error="standard error of the initial rotation [rad]",
         release_time="time at which the block was let go [s]",
         release_time_error="standard error of the release time [s]",
-        gauge_offset="reading of the gauge where the block is upright [rad]",
+        gauge_offset="reading of the gauge while the block is upright [rad]",
         gauge_offset_error="standard error of the gauge's offset [rad]",
     ),
     *rows_over(
