@@ -30,7 +30,9 @@ if not _is_command_line():
 _STUB = __loader__.get_data(os.path.join(os.path.dirname(__file__), "__init__.pyi")).decode()
 _HOMES = {
     name: home
-    for home, _, name in (one.replace("(", " ").split()[:3] for one in _STUB.split("\nfrom ")[1:])
+    for home, _, name in (
+        words.replace("(", " ").split()[:3] for words in _STUB.split("\nfrom ")[1:]
+    )
 }
 """Module from which each public name is imported, read from the stub of this file."""
 

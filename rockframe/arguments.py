@@ -15,13 +15,13 @@ Option = TypeVar("Option", bound=StrEnum)
 
 def with_string_keys(values: Mapping[Any, Any], *, owner: str) -> dict[str, Any]:
     """Convert the keys of a mapping, such as numbers, to strings that differ."""
-    found = {str(key): value for key, value in values.items()}
-    if len(found) < len(values):
+    named = {str(key): value for key, value in values.items()}
+    if len(named) < len(values):
         words = [str(key) for key in values]
         repeated = next(word for word in words if words.count(word) > 1)
         msg = f"{owner}: two entries are called {repeated!r}; expected names that differ"
         raise ComponentError(msg)
-    return found
+    return named
 
 
 def checked_choice(kind: type[Option], value: object, *, owner: str, name: str) -> Option:
@@ -29,9 +29,9 @@ def checked_choice(kind: type[Option], value: object, *, owner: str, name: str) 
     try:
         return kind(str(value))
     except ValueError:
-        known = " or ".join(repr(str(one)) for one in kind)
+        choices = " or ".join(repr(str(member)) for member in kind)
         near = did_you_mean(value, map(str, kind))
-        msg = f"{owner}: {name} must be {known}, got {short_repr(value)}{near}"
+        msg = f"{owner}: {name} must be {choices}, got {short_repr(value)}{near}"
         raise ComponentError(msg) from None
 
 

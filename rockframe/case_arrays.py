@@ -186,8 +186,8 @@ def python_number(number: Any) -> Any:
 def maximum(first: Any, second: Any) -> Any:
     """Return the greater of two numbers, as ``max`` does."""
     if isinstance(first, CaseArray) or isinstance(second, CaseArray):
-        one, other = _operand_values(first), _operand_values(second)
-        return CaseArray(np.where(np.greater(other, one), other, one))
+        left, right = _operand_values(first), _operand_values(second)
+        return CaseArray(np.where(np.greater(right, left), right, left))
     return max(first, second)
 
 
@@ -208,8 +208,8 @@ def _binary(function: Callable[[float, float], float]) -> Callable[[Any, Any], A
     def wrapped(first: Any, second: Any) -> Any:
         if isinstance(first, CaseArray) or isinstance(second, CaseArray):
             count = len(first.values if isinstance(first, CaseArray) else second.values)
-            both = values_by_case(first, count).tolist(), values_by_case(second, count).tolist()
-            return CaseArray(np.array(list(map(function, *both))))
+            operands = values_by_case(first, count).tolist(), values_by_case(second, count).tolist()
+            return CaseArray(np.array(list(map(function, *operands))))
         return function(first, second)
 
     wrapped.__doc__ = function.__doc__

@@ -57,14 +57,14 @@ _REPLACED: Final[dict[str, tuple[Callable[..., Any], str]]] = {
 def deprecated_object(name: str, known: Iterable[str]) -> Any:
     """Return the object of an old name, and warn with the new one; else propose a similar name."""
     if name in _REPLACED:
-        found, new_name = _REPLACED[name]
+        target, new_name = _REPLACED[name]
     elif name in MOVED:
         new_name = MOVED[name]
         home, _, attribute = new_name.rpartition(".")
-        found = getattr(import_module(home), attribute)
+        target = getattr(import_module(home), attribute)
     else:
         owner = "module 'rockframe'"
         raise errors.unknown_attribute(owner, name, known)
     text = f"rockframe.{name} is now {new_name}{_ALTERNATIVES.get(name, '')}"
     warnings.warn(text, DeprecationWarning, stacklevel=3)
-    return found
+    return target

@@ -40,10 +40,10 @@ def _user_traceback(trace: TracebackType | None) -> TracebackType | None:
     """Return a traceback without the frames of rockframe."""
     if trace is None:
         return None
-    rest = _user_traceback(trace.tb_next)
+    below = _user_traceback(trace.tb_next)
     if str(trace.tb_frame.f_globals.get("__name__", "")).partition(".")[0] == _PACKAGE:
-        return rest
-    return TracebackType(rest, trace.tb_frame, trace.tb_lasti, trace.tb_lineno)
+        return below
+    return TracebackType(below, trace.tb_frame, trace.tb_lasti, trace.tb_lineno)
 
 
 _PACKAGE: Final = __name__.partition(".")[0]
@@ -229,11 +229,11 @@ are left out: in papers they are half the width and half the height."""
 
 def did_you_mean(value: object, known: Iterable[str]) -> str:
     """Ask whether a similar word was meant, at the end of a message; empty if none is similar."""
-    words = {one.casefold(): one for one in known}
-    wanted = "" if value is None else str(value).casefold()
-    near = [one for one in _SYMBOLS.get(wanted, ()) if one in words]
-    near = near or get_close_matches(wanted, words, n=3)
-    return f"; was {' or '.join(repr(words[one]) for one in near)} meant?" if near else ""
+    words = {name.casefold(): name for name in known}
+    key = "" if value is None else str(value).casefold()
+    near = [symbol for symbol in _SYMBOLS.get(key, ()) if symbol in words]
+    near = near or get_close_matches(key, words, n=3)
+    return f"; was {' or '.join(repr(words[match]) for match in near)} meant?" if near else ""
 
 
 def unexpected_argument(call: str, name: str, known: Iterable[str]) -> ArgumentError:
@@ -247,7 +247,7 @@ def unknown_attribute(owner: str, name: str, known: Iterable[str]) -> AccessErro
     """Return Python's error of a missing attribute, and propose a similar one."""
     words = f"{owner} has no attribute {name!r}"
     if not name.startswith("_"):  # programs look up those with an underscore
-        words += did_you_mean(name, (one for one in known if not one.startswith("_")))
+        words += did_you_mean(name, (public for public in known if not public.startswith("_")))
     return AccessError(words, name=name)
 
 
@@ -299,18 +299,18 @@ def named_by_own_part(problem: Exception) -> Exception:
 
     The same error if it arose elsewhere, or is one of rockframe.
     """
-    found, trace = None, problem.__traceback__
+    method, trace = None, problem.__traceback__
     while trace is not None:
         frame, trace = trace.tb_frame, trace.tb_next
         kind, module = type(frame.f_locals.get("self")), str(frame.f_globals.get("__name__"))
-        modules = {str(one.__module__).partition(".")[0] for one in kind.__mro__}
+        modules = {str(base.__module__).partition(".")[0] for base in kind.__mro__}
         # a component or a support derives from one of rockframe, laws and equations from a tuple
-        own = _PACKAGE in modules or issubclass(kind, tuple)
-        if own and module.partition(".")[0] != _PACKAGE:
-            found = f"{kind.__name__}.{frame.f_code.co_name}"
-    if found is None or isinstance(problem, RockframeError | Warning):
+        is_own = _PACKAGE in modules or issubclass(kind, tuple)
+        if is_own and module.partition(".")[0] != _PACKAGE:
+            method = f"{kind.__name__}.{frame.f_code.co_name}"
+    if method is None or isinstance(problem, RockframeError | Warning):
         return problem
-    return ComponentError(f"{found} raised {type(problem).__name__}: {problem}")
+    return ComponentError(f"{method} raised {type(problem).__name__}: {problem}")
 
 
 def words_of(problem: Exception) -> str:
@@ -323,4 +323,4 @@ def words_of(problem: Exception) -> str:
 def __dir__() -> list[str]:
     kinds = RockframeError | RockframeWarning
     known = globals().items()
-    return [name for name, one in known if isinstance(one, type) and issubclass(one, kinds)]
+    return [name for name, value in known if isinstance(value, type) and issubclass(value, kinds)]

@@ -42,9 +42,9 @@ def rectangle(
 
 def readable_arguments(arguments: Mapping[str, Any]) -> dict[str, str]:
     """Return the names and values of arguments as texts to read, without long ones."""
-    found = {name.replace("_", " "): _formatted(value) for name, value in arguments.items()
+    texts = {name.replace("_", " "): _formatted(value) for name, value in arguments.items()
              if name != "type"}  # fmt: skip
-    return {name: words for name, words in found.items() if len(words) <= _MAX_LENGTH}
+    return {name: words for name, words in texts.items() if len(words) <= _MAX_LENGTH}
 
 
 _MAX_LENGTH: Final = 60

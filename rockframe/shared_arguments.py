@@ -59,29 +59,33 @@ def with_shared_arguments(
     declared = declared_arguments(kind)
 
     def decorate(function: Function) -> Function:
-        own = inspect.signature(function)
-        first = [one for one in own.parameters.values() if one.kind is not one.VAR_KEYWORD]
+        signature = inspect.signature(function)
+        first = [
+            parameter
+            for parameter in signature.parameters.values()
+            if parameter.kind is not parameter.VAR_KEYWORD
+        ]
         shared = [
             inspect.Parameter(
-                name, inspect.Parameter.KEYWORD_ONLY, default=defaults.get(name, one.default)
+                name, inspect.Parameter.KEYWORD_ONLY, default=defaults.get(name, argument.default)
             )
-            for name, one in declared.items()
+            for name, argument in declared.items()
         ]
-        whole = own.replace(parameters=[*first, *shared])
+        complete = signature.replace(parameters=[*first, *shared])
         more = inspect.Parameter(
             f"more_{extra_into}", inspect.Parameter.VAR_KEYWORD, annotation=Any
         )
-        shown = whole.replace(parameters=[*first, *shared, *([more] if extra_into else [])])
+        shown = complete.replace(parameters=[*first, *shared, *([more] if extra_into else [])])
 
         @wraps(function)
         def call(*values: Any, **named: Any) -> Any:
-            others = [name for name in named if name not in whole.parameters]
-            if others and extra_into is None:
+            unknown = [name for name in named if name not in complete.parameters]
+            if unknown and extra_into is None:
                 raise ArgumentError(
-                    _unknown_argument(function.__qualname__, others[0], whole.parameters)
+                    _unknown_argument(function.__qualname__, unknown[0], complete.parameters)
                 )
-            if others and extra_into is not None:
-                more_named = {name: named.pop(name) for name in others}
+            if unknown and extra_into is not None:
+                more_named = {name: named.pop(name) for name in unknown}
                 mapping = {} if named.get(extra_into) is None else named[extra_into]
                 if isinstance(mapping, Mapping):  # the function refuses anything else
                     named[extra_into] = _merged_arguments(
@@ -90,7 +94,7 @@ def with_shared_arguments(
             try:
                 return function(*values, **{**defaults, **named})
             except TypeError as problem:
-                raise_call_error(problem, whole.parameters)
+                raise_call_error(problem, complete.parameters)
                 raise
 
         cast("Any", call).__signature__ = shown
@@ -105,7 +109,7 @@ def _merged_arguments(
     function: str, name: str, mapping: Mapping[Any, Any], more: Mapping[str, Any]
 ) -> dict[Any, Any]:
     """Add arguments to those of a mapping; refuse one that is given twice."""
-    twice = [one for one in more if one in mapping]
+    twice = [key for key in more if key in mapping]
     if twice:
         msg = f"{function}() got {twice[0]!r} twice, also in {name!r}"
         raise ArgumentError(msg)

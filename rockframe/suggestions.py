@@ -34,11 +34,11 @@ def with_hints(**hints: str) -> Callable[[Function], Function]:
     def decorate(function: Function) -> Function:
         parameters = list(signature(function).parameters.values())
         by_name = (Parameter.POSITIONAL_OR_KEYWORD, Parameter.KEYWORD_ONLY)
-        known = [one.name for one in parameters if one.kind in by_name]
+        known = [parameter.name for parameter in parameters if parameter.kind in by_name]
         home = _MODULES_BY_FIRST_PARAMETER.get(parameters[0].name) if parameters else None
         bound = home is not None and function.__module__.startswith(home)
         listed = known[1:] if bound else known
-        any_name = any(one.kind is one.VAR_KEYWORD for one in parameters)
+        any_name = any(parameter.kind is parameter.VAR_KEYWORD for parameter in parameters)
 
         @wraps(function)
         def call(*values: Any, **named: Any) -> Any:
@@ -78,8 +78,8 @@ def raise_call_error(problem: TypeError, listed: Iterable[str]) -> None:
     if trace is None or trace.tb_next is not None:
         return
     names = ", ".join(listed)
-    taken = f". It takes {names}" if names else ". It takes no arguments"
-    msg = f"{problem}{taken}"
+    expected = f". It takes {names}" if names else ". It takes no arguments"
+    msg = f"{problem}{expected}"
     raise ArgumentError(msg) from None
 
 
@@ -88,26 +88,26 @@ def suggests_names(kind: Class) -> Class:
 
     A base class of it must be decorated, too: inherited methods are left as they are.
     """
-    for name, one in list(vars(kind).items()):
+    for name, member in list(vars(kind).items()):
         if name.startswith("_") and name != "__init__":
             continue
-        if isinstance(one, classmethod | staticmethod):
-            function: Any = cast("Any", one).__func__
+        if isinstance(member, classmethod | staticmethod):
+            function: Any = cast("Any", member).__func__
             if _is_unhinted_function(function):
-                setattr(kind, name, type(one)(with_hints()(function)))
-        elif _is_unhinted_function(one):
-            setattr(kind, name, with_hints()(one))
-    if not any("__getattr__" in vars(one) for one in kind.__mro__):
+                setattr(kind, name, type(member)(with_hints()(function)))
+        elif _is_unhinted_function(member):
+            setattr(kind, name, with_hints()(member))
+    if not any("__getattr__" in vars(base) for base in kind.__mro__):
         kind.__getattr__ = _raise_no_attribute
     return kind
 
 
-def _is_unhinted_function(one: object) -> bool:
-    return isinstance(one, FunctionType) and hints_of(one) is None
+def _is_unhinted_function(value: object) -> bool:
+    return isinstance(value, FunctionType) and hints_of(value) is None
 
 
 def _raise_no_attribute(self: object, name: str) -> NoReturn:
-    if any(name in vars(one) for one in type(self).__mro__):  # a property that failed
+    if any(name in vars(base) for base in type(self).__mro__):  # a property that failed
         object.__getattribute__(self, name)
     # programs, and dir() itself, look up names that begin with an underscore
     known = () if name.startswith("_") else dir(self)

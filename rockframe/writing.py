@@ -106,10 +106,10 @@ def _path_fault(requested: Path, target: Path, kind: FileKind) -> str | None:
         return "this is a folder; name a file in it"
     if requested.suffix.lower() not in kind.suffixes:
         suffixes = " or ".join(kind.suffixes)
-        found = f"ends in {requested.suffix!r}" if requested.suffix else "has no ending"
+        fault = f"ends in {requested.suffix!r}" if requested.suffix else "has no ending"
         printed = requested.suffix.lower() == ".pdf" and ".html" in kind.suffixes
         how = "; a browser prints the page into a PDF" if printed else ""
-        return f"the name {found}; that of {kind.name} ends in {suffixes}{how}"
+        return f"the name {fault}; that of {kind.name} ends in {suffixes}{how}"
     if not target.parent.is_dir():
         return f"there is no folder {str(requested.parent)!r}"
     return None
@@ -124,10 +124,10 @@ def check_not_read(path: PathLike, read: Iterable[PathLike]) -> None:
 
 
 def _input_fault(target: Path, read: Iterable[PathLike]) -> str | None:
-    for one in read:
-        source = Path(one).expanduser()
+    for entry in read:
+        source = Path(entry).expanduser()
         if source.is_dir() and source.resolve() in target.parents:
-            return f"this file is in the input folder {str(one)!r}; name another one"
+            return f"this file is in the input folder {str(entry)!r}; name another one"
         if source.exists() and source.samefile(target):
             return "this file is an input and is not overwritten; name another one"
     return None

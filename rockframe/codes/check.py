@@ -35,11 +35,11 @@ def rigid_block_setting(
         ):
             return setting
     carried = ", which may carry loads that are masses," if allow_loads else ","
-    found = ", ".join(type(part).__name__ for part in system.parts.structural())
+    names = ", ".join(type(part).__name__ for part in system.parts.structural())
     slope = "" if level else " on a slope"
     hint = ", or with sliding='checked', which holds it" if setting.slides else ""
     msg = (
-        f"{owner}: the check is of a block on level rigid ground{carried} got {found}{slope}, "
+        f"{owner}: the check is of a block on level rigid ground{carried} got {names}{slope}, "
         f"{setting.model}; check the block alone, rf.System(block){hint}"
     )
     raise ComponentError(msg)
@@ -79,12 +79,14 @@ def peak_responses(
     """Return the largest motion of the block, and of a point of it [m], under each motion."""
     x, y = point
     points = {"point": (f"{x!r} m", f"{y!r} m")}
-    found: dict[str, PeakResponse] = {}
+    responses: dict[str, PeakResponse] = {}
     for label, motion in motions.items():
         run = system.simulate(motion, outputs=None, free_vibration=free_vibration, points=points)
         displacement = float(run.peak_point_horizontal_displacement[0])
-        found[label] = PeakResponse(float(run.peak_rotation), bool(run.overturned), displacement)
-    return found
+        responses[label] = PeakResponse(
+            float(run.peak_rotation), bool(run.overturned), displacement
+        )
+    return responses
 
 
 def scene_summary(system: System) -> str:

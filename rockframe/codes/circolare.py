@@ -118,7 +118,7 @@ def circolare_2019(
         raise ComponentError(msg)
     mechanism = _mechanism_of(system, setting)
     capacity = _capacity_lines(mechanism, confidence)
-    values = {one.symbol: one.value for one in capacity}
+    values = {line.symbol: line.value for line in capacity}
     if elastic_period is not None:
         period_before_uplift = to_si(
             elastic_period, TIME, owner=_OWNER, name="elastic_period", condition=POSITIVE
@@ -207,10 +207,10 @@ class _Mechanism(NamedTuple):
     @property
     def centre_of_mass(self) -> tuple[float, float]:
         """Horizontal distance of the common centre of mass from the edge, and height [m]."""
-        whole = math.fsum(self.weights)
+        weight = math.fsum(self.weights)
         return tuple(  # type: ignore[return-value]
-            math.fsum(map(operator.mul, self.weights, one)) / whole
-            for one in (self.arms, self.heights)
+            math.fsum(map(operator.mul, self.weights, distances)) / weight
+            for distances in (self.arms, self.heights)
         )
 
     @property
@@ -227,9 +227,9 @@ def _mechanism_of(system: System, setting: RigidGroundSetting | RestrainedSettin
     """Return the mechanism of the wall and its loads about the edge over which it overturns."""
     angles, block = setting.overturning_angles, system.parts.block_si
     side = 1.0 if setting.overturning_rotations[0] > 0.0 and angles.right <= angles.left else -1.0
-    carried = [one.si for one in system.parts.links if isinstance(one, Load)]
-    places = [(block.eccentricity, block.centre_height), *(one.at for one in carried)]
-    masses = [block.mass, *(one.moving_mass for one in carried)]
+    carried = [link.si for link in system.parts.links if isinstance(link, Load)]
+    places = [(block.eccentricity, block.centre_height), *(load.at for load in carried)]
+    masses = [block.mass, *(load.moving_mass for load in carried)]
     return _Mechanism(
         tuple(mass * setting.gravity for mass in masses),
         tuple(0.5 * block.width - side * x for x, _ in places),
@@ -294,8 +294,8 @@ def _displacement_demand(
 ) -> float:
     """Return the largest mean spectral displacement of the motions, over periods up to one [m]."""
     periods = np.geomspace(min(_SHORTEST_PERIOD, 0.5 * period), period, _PERIOD_COUNT)
-    found = response_spectrum(motions, (periods, "s"), damping).spectral_displacement
-    return float(found.mean("motion").max())
+    displacements = response_spectrum(motions, (periods, "s"), damping).spectral_displacement
+    return float(displacements.mean("motion").max())
 
 
 def _dynamic_displacements(
@@ -315,7 +315,7 @@ def _dynamic_displacements(
             ultimate_arm if peak.overturned else peak.displacement
         )
         lines.append(CheckedLine(f"d, {label}", displacement, Unit.METRE, words, "run"))
-    mean = float(np.mean([one.value for one in lines]))
+    mean = float(np.mean([line.value for line in lines]))
     words = "of the largest displacements; overturned ones count d_0"
     return (*lines, CheckedLine("mean of d", mean, Unit.METRE, words, "C8.7.1.2.1.9"))
 
@@ -324,11 +324,11 @@ def _dynamic_verdicts(
     displacements: tuple[CheckedLine, ...], ultimate: float, limit: float, state: str
 ) -> list[CheckedVerdict]:
     overturned = [
-        one.symbol.removeprefix("d, ") for one in displacements[:-1] if one.words == "overturned"
+        line.symbol.removeprefix("d, ") for line in displacements[:-1] if line.words == "overturned"
     ]
     # without a wall, one that is eccentric may stand beyond d_0 on the side of its longer arm
     beyond = [
-        one for one in displacements[:-1] if one.words != "overturned" and one.value > ultimate
+        line for line in displacements[:-1] if line.words != "overturned" and line.value > ultimate
     ]
     mean, clause = displacements[-1].value, "C8.7.1.2.1.9"
     return [

@@ -142,10 +142,10 @@ def to_pelicun(
 
 def _check_demand(demand: str, measure: str, kind: str) -> None:
     """Raise on a demand whose words name another quantity than that of the fragility."""
-    stated, own = (
+    stated, needed = (
         _DEMAND_QUANTITIES.intersection(re.findall("[a-z]+", of.lower())) for of in (demand, kind)
     )
-    if stated and stated != own:
+    if stated and stated != needed:
         msg = (
             f"{_PELICUN}: the demand must be of the measure of the fragility, {measure}, as "
             f"{kind!r} is, got {demand!r}; fit a fragility over the measure of the demand"
@@ -219,8 +219,8 @@ def to_openquake(
     'model.xml'
     """
     checked_name(loss, _LOSS_CATEGORIES, owner=_OPENQUAKE, name="loss")
-    for what, label in (("description", description), ("category", category)):
-        checked_text(label, owner=_OPENQUAKE, name=what)
+    for argument, label in (("description", description), ("category", category)):
+        checked_text(label, owner=_OPENQUAKE, name=argument)
     no_damage = None if no_damage_limit is None else to_ratio(
         no_damage_limit, owner=_OPENQUAKE, name="no_damage_limit", condition=POSITIVE
     )  # fmt: skip
@@ -233,8 +233,8 @@ def to_openquake(
     for word in (name, *fragilities):
         _check_identifier(word)
     fitted = {
-        taxonomy: _fitted_limit_states(one, _OPENQUAKE_MEASURES, owner=_OPENQUAKE)
-        for taxonomy, one in fragilities.items()
+        taxonomy: _fitted_limit_states(fragility, _OPENQUAKE_MEASURES, owner=_OPENQUAKE)
+        for taxonomy, fragility in fragilities.items()
     }
     names = {tuple(state for state, _, _ in states) for _, states in fitted.values()}
     if len(names) > 1:
@@ -285,14 +285,14 @@ def _fitted_limit_states(
 ) -> tuple[str, list[tuple[str, float, float]]]:
     """Return measure, and name, median and dispersion of limit states from the least median up."""
     dataset = checked_dataset(value, owner=owner)
-    known = [name for name in measures if name in dataset.dims]
-    if "median_intensity" not in dataset or len(known) != 1:
+    axes = [name for name in measures if name in dataset.dims]
+    if "median_intensity" not in dataset or len(axes) != 1:
         msg = (
             f"{owner}: found no fragility over one of {', '.join(measures)}; expected that of "
             "rf.fragility"
         )
         raise SchemaError(msg)
-    dataset = in_own_units(dataset, known[0], owner=owner)
+    dataset = in_own_units(dataset, axes[0], owner=owner)
     with_states = dataset if LIMIT_STATE[0] in dataset.dims else dataset.expand_dims(*LIMIT_STATE)
     structures = [
         str(dim) for dim in with_states["fragility_status"].dims if dim not in LIMIT_STATE
@@ -305,19 +305,19 @@ def _fitted_limit_states(
         )
         raise ComponentError(msg)
     with_states = with_states.isel(dict.fromkeys(structures, 0))
-    found: list[tuple[str, float, float]] = []
+    states: list[tuple[str, float, float]] = []
     for number in range(with_states.sizes["limit_state"]):
-        one = with_states.isel(limit_state=number)
-        name = str(one["limit_state"].item()) if "limit_state" in one.coords else "counted"
-        if int(one["fragility_status"]) != FragilityStatus.FITTED:
+        state = with_states.isel(limit_state=number)
+        name = str(state["limit_state"].item()) if "limit_state" in state.coords else "counted"
+        if int(state["fragility_status"]) != FragilityStatus.FITTED:
             msg = (
                 f"{owner}: limit state {name!r} has no lognormal fit (fragility_status); pick "
                 "others, for example fragility.sel(limit_state=['overturning'])"
             )
             raise ComponentError(msg)
-        found.append((name, float(one["median_intensity"]), float(one["dispersion"])))
+        states.append((name, float(state["median_intensity"]), float(state["dispersion"])))
     # both programs take the last limit state that is exceeded for the most severe one
-    return known[0], sorted(found, key=lambda state: state[1])
+    return axes[0], sorted(states, key=lambda state: state[1])
 
 
 def _period(dataset: xr.Dataset, owner: str) -> float:

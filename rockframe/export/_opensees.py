@@ -112,9 +112,9 @@ def to_opensees(
     >>> rf.export.to_opensees(system, pulse, Path(tempfile.mkdtemp()) / "model.py").name
     'model.py'
     """
-    for one, kind in ((system, System), (motion, GroundMotion)):
-        if not isinstance(cast("object", one), kind):
-            msg = f"{_OWNER} needs a {kind.__name__}, got {short_repr(one)}"
+    for value, kind in ((system, System), (motion, GroundMotion)):
+        if not isinstance(cast("object", value), kind):
+            msg = f"{_OWNER} needs a {kind.__name__}, got {short_repr(value)}"
             raise ComponentError(msg)
     _check_supported(system)
     spring_count = checked_integer(springs, owner=_OWNER, name="springs", lowest=2)
@@ -253,7 +253,7 @@ def _docstring(
         "Steps of integration are fixed, and events within them are not located. After many "
         "impacts two runs that were close at first may differ: compare peaks before histories.",
     ]
-    lines = "\n\n".join(fill(one, 96) for one in rows if one)
+    lines = "\n\n".join(fill(row, 96) for row in rows if row)
     return lines.replace("\\", "/").replace('"""', "'''")
 
 

@@ -58,7 +58,9 @@ def build(ops: Any, arguments: dict[str, Any]) -> tuple[int, int, float]:
         ops.mass(tag, share, share)
     ops.uniaxialMaterial("Elastic", 1, arguments["bars_over_springs"] * stiffness * count)
     bars = [(above, middle)]
-    bars += [(one, tag) for tag in places if tag not in (middle, above) for one in (middle, above)]
+    bars += [
+        (node, tag) for tag in places if tag not in (middle, above) for node in (middle, above)
+    ]
     for number, (start, end) in enumerate(bars, 1):
         length = math.dist(places[start], places[end])
         ops.element("corotTruss", number, start, end, length, 1)
@@ -124,17 +126,17 @@ def compare_peaks(values: dict[str, Any], history: Path) -> dict[str, float]:
     """Run OpenSees, write its history and that of rockframe, and compare the peaks."""
     ops = opensees()
     ops.logFile(os.devnull, "-noEcho")  # it prints a message for each impact
-    time, found = solve(ops, values)
+    time, rotation = solve(ops, values)
     expected = values["rotation"]
-    both = min(found.size, expected.size)
+    count = min(rotation.size, expected.size)
     with history.open("w", newline="") as file:
         writer = csv.writer(file)
         writer.writerow(["time [s]", "rotation in OpenSees [rad]", "rotation in rockframe [rad]"])
-        rows = zip(time[:both], found[:both], expected[:both], strict=True)
-        writer.writerows([f"{one:.9g}" for one in row] for row in rows)
-    peaks = {"OpenSees": float(np.abs(found).max()), "rockframe": values["peak"]}
+        rows = zip(time[:count], rotation[:count], expected[:count], strict=True)
+        writer.writerows([f"{value:.9g}" for value in row] for row in rows)
+    peaks = {"OpenSees": float(np.abs(rotation).max()), "rockframe": values["peak"]}
     size = max(peaks["rockframe"], 1e-6 * values["overturning_angle"])
-    apart = float(np.abs(found[:both] - expected[:both]).max()) / size
+    apart = float(np.abs(rotation[:count] - expected[:count]).max()) / size
     print(f"rockframe: {values['verdict']}")
     for name, peak in peaks.items():
         share = 100.0 * peak / values["overturning_angle"]

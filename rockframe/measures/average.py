@@ -78,7 +78,7 @@ def average_spectral_acceleration(
         raise ComponentError(msg)
     with_unit = (seconds, str(PERIOD.unit))
     things = list(motion.values()) if isinstance(motion, Mapping) else [motion]
-    if things and all(isinstance(one, HorizontalPair) for one in things):
+    if things and all(isinstance(thing, HorizontalPair) for thing in things):
         spectrum = rotated_spectrum(cast("Any", motion), with_unit, damping_ratio)
         names = _PAIR_AVERAGES
     else:
@@ -92,11 +92,11 @@ def average_spectral_acceleration(
             logarithms: Any = np.log(spectrum[name].isel(damping_ratio=0))
         averages[average] = np.exp(logarithms.mean("period")).to_numpy()
     several = "motion" in spectrum.dims
-    kept = ("motion", "motion_sha256", "component")
+    copied = ("motion", "motion_sha256", "component")
     dataset = build_dataset(
         averages,
         {
-            **{name: spectrum.attrs[name] for name in kept if name in spectrum.attrs},
+            **{name: spectrum.attrs[name] for name in copied if name in spectrum.attrs},
             "references": _REFERENCES,
             "damping_ratio": float(spectrum["damping_ratio"][0]),
             "lowest_period": float(seconds[0]),

@@ -111,18 +111,18 @@ def rotated_spectrum(
             f"{_SPECTRUM}: directions must be even, to have both components among them, got {count}"
         )
         raise ComponentError(msg)
-    for one in inputs.items:
-        check_cost(one.signals[0], seconds, owner=_SPECTRUM)
+    for item in inputs.items:
+        check_cost(item.signals[0], seconds, owner=_SPECTRUM)
     if periods is not None:
-        both = [one.signals[0] for one in inputs.items]
-        warn_of_coarse_samples(both, shortest_positive_period(seconds), owner=_SPECTRUM)
+        firsts = [item.signals[0] for item in inputs.items]
+        warn_of_coarse_samples(firsts, shortest_positive_period(seconds), owner=_SPECTRUM)
     vectors = unit_vectors(count)
-    has_vertical = all(one.vertical is not None for one in inputs.items)
+    has_vertical = all(item.vertical is not None for item in inputs.items)
 
-    def spectra(one: HorizontalPair) -> dict[str, Array]:
-        values = _spectra(one.signals, seconds, ratios, vectors)
-        if has_vertical and one.vertical is not None:
-            vertical = signal_spectra(one.vertical.si.horizontal, seconds, ratios)[
+    def spectra(components: HorizontalPair) -> dict[str, Array]:
+        values = _spectra(components.signals, seconds, ratios, vectors)
+        if has_vertical and components.vertical is not None:
+            vertical = signal_spectra(components.vertical.si.horizontal, seconds, ratios)[
                 "pseudo_spectral_acceleration"
             ]
             horizontal = values["median_rotated_acceleration"]
@@ -223,17 +223,19 @@ def _pairs(value: object, *, owner: str) -> Inputs[HorizontalPair]:
     if isinstance(value, HorizontalPair):
         return Inputs([value], None, {"motion": value.name, "references": _REFERENCES})
     if not isinstance(value, Mapping):
-        wanted = "two horizontal components, rf.HorizontalPair(first, second)"
-        msg = f"{owner}: pair needs {wanted}, got {short_repr(value)}"
+        expected = "two horizontal components, rf.HorizontalPair(first, second)"
+        msg = f"{owner}: pair needs {expected}, got {short_repr(value)}"
         raise ComponentError(msg)
     pairs = cast("Mapping[Any, Any]", value)
     check_not_empty(pairs, owner=owner)
-    for label, one in pairs.items():
-        if not isinstance(one, HorizontalPair):
+    for label, pair in pairs.items():
+        if not isinstance(pair, HorizontalPair):
             msg = (
-                f"{owner}: {label!r} is {short_repr(one)}, expected a HorizontalPair; those of a "
+                f"{owner}: {label!r} is {short_repr(pair)}, expected a HorizontalPair; those of a "
                 "suite "
                 "are suite.pairs"
             )
             raise ComponentError(msg)
-    return Inputs(list(pairs.values()), [str(one) for one in pairs], {"references": _REFERENCES})
+    return Inputs(
+        list(pairs.values()), [str(label) for label in pairs], {"references": _REFERENCES}
+    )

@@ -121,8 +121,8 @@ def intensity_measures(
 
     def compute(signal: Signal) -> dict[str, float]:
         check_cost(signal, _PERIODS, owner=_OWNER)
-        found = _ground_measures(signal, threshold=level, damping_ratio=damping, gravity=g)
-        values = {name: measure() for name, measure in found.items()}
+        measures = _ground_measures(signal, threshold=level, damping_ratio=damping, gravity=g)
+        values = {name: measure() for name, measure in measures.items()}
         if block is not None:
             values |= _block_measures(signal, block, values, gravity=g)
         return values
@@ -148,10 +148,10 @@ def measure_of_ground(motion: GroundMotion, name: str) -> float:
     if name in ("housner_spectrum_intensity", "predominant_velocity_period"):
         check_cost(motion.si.horizontal, _PERIODS, owner=_OWNER)
     level = to_si(_THRESHOLD, ACCELERATION, owner=_OWNER, name="threshold", condition=POSITIVE)
-    found = _ground_measures(
+    measures = _ground_measures(
         motion.si.horizontal, threshold=level, damping_ratio=_DAMPING, gravity=STANDARD_GRAVITY
     )
-    return found[name]()
+    return measures[name]()
 
 
 def _ground_measures(

@@ -114,7 +114,9 @@ def spectra_of(
 ) -> xr.Dataset:
     """Return spectra of signals at checked periods, as :func:`response_spectrum` does."""
     if method is Interpolation.BAND_LIMITED:
-        inputs = replace(inputs, items=[_refined_record(one, seconds) for one in inputs.items])
+        inputs = replace(
+            inputs, items=[_refined_record(motion, seconds) for motion in inputs.items]
+        )
     for signal in inputs.items:
         check_cost(signal, seconds, owner=_OWNER)
     values = inputs.joined(inputs.each(lambda signal: signal_spectra(signal, seconds, ratios)))
@@ -159,12 +161,12 @@ def _refined_record(signal: Signal, seconds: Array) -> Signal:
 
 def signal_spectra(signal: Signal, seconds: Array, ratios: Array) -> dict[str, Array]:
     """Compute the spectra of a signal over damping ratios and periods, by their names."""
-    found = np.array([spectral_peaks(signal, seconds, ratio) for ratio in ratios.tolist()])
-    pseudo_velocity, pseudo_acceleration = pseudo_spectra(signal, seconds, found[:, :, 0])
+    peaks = np.array([spectral_peaks(signal, seconds, ratio) for ratio in ratios.tolist()])
+    pseudo_velocity, pseudo_acceleration = pseudo_spectra(signal, seconds, peaks[:, :, 0])
     return {
-        "spectral_displacement": found[:, :, 0],
-        "spectral_velocity": found[:, :, 1],
-        "absolute_spectral_acceleration": found[:, :, 2],
+        "spectral_displacement": peaks[:, :, 0],
+        "spectral_velocity": peaks[:, :, 1],
+        "absolute_spectral_acceleration": peaks[:, :, 2],
         "pseudo_spectral_velocity": pseudo_velocity,
         "pseudo_spectral_acceleration": pseudo_acceleration,
     }

@@ -263,9 +263,9 @@ def animation(
     def draw(number: int) -> None:
         sample = int(samples[number])
         artist.draw(history.placement_at(sample))
-        now = float(shown_run.time[sample])
+        instant = float(shown_run.time[sample])
         for cursor in cursors:
-            cursor.set_xdata([now, now])
+            cursor.set_xdata([instant, instant])
         dot.set_data([across[sample]], [up[sample]])
         in_contact = any(history.placement_at(sample).bearing())
         dot.set_color(BLUE if in_contact else CONTACT_COLOUR)

@@ -92,7 +92,7 @@ class LayoutBuilder:
         block = self._displaced(placement.block, geometry.block) + lift
         level = geometry.base_position
         members = tuple(
-            self._displaced(placement.block, one + level) + lift for one in geometry.members
+            self._displaced(placement.block, member + level) + lift for member in geometry.members
         )
         centres = self._displaced(placement.block, np.array([geometry.centre]) + level) + lift
         outline = geometry.cap_outline
@@ -110,12 +110,12 @@ class LayoutBuilder:
         floor = 0.0 if geometry.stacked else -self.pad_thickness
         ground = np.array([(-self.reach, floor), (self.reach, floor)])
         lower = tuple(
-            self._displaced(partial(placement.lower, k), one.outline)
-            for k, one in enumerate(geometry.lower)
+            self._displaced(partial(placement.lower, k), body.outline)
+            for k, body in enumerate(geometry.lower)
         )
         of_lower = [
-            self._displaced(partial(placement.lower, k), np.array([one.centre]))
-            for k, one in enumerate(geometry.lower)
+            self._displaced(partial(placement.lower, k), np.array([body.centre]))
+            for k, body in enumerate(geometry.lower)
         ]
         if geometry.stacked and geometry.cap is not None:
             of_lower.append(
@@ -124,22 +124,22 @@ class LayoutBuilder:
         centres = np.vstack([centres, *of_lower])
         if pads:
             contacts += tuple(
-                one[k : k + 1] if placement.bearing()[k] else _NO_POINT
-                for one in columns or (block,)
+                column[k : k + 1] if placement.bearing()[k] else _NO_POINT
+                for column in columns or (block,)
                 for k in (0, 1)
             )
         else:
             rigid_bases = [block, *lower][: None if soil is None else -1]
             contacts += tuple(
-                _contact_points(one, placement.bearing_of(k))
+                _contact_points(column, placement.bearing_of(k))
                 for k, body in enumerate(rigid_bases)
-                for one in columns or (body,)
+                for column in columns or (body,)
             )
         restrainers = tuple(
             np.full((2, 2), np.nan)
             if number in placement.broken
-            else self._restrainer_ends(placement, one)
-            for number, one in enumerate(geometry.links)
+            else self._restrainer_ends(placement, link)
+            for number, link in enumerate(geometry.links)
         )
         fields = (block, cap, members, centres, pads, in_contact, soil, contacts, ground)
         return self._rotated_layout(Layout(*fields, lower, restrainers, frame_parts))
@@ -185,7 +185,7 @@ class LayoutBuilder:
             placement.block, np.array([(-half, level), (half, level)])
         ) + self._pad_offset(placement)
         free = self.magnify * geometry.pad_settlement
-        found: list[Array] = []
+        outlines: list[Array] = []
         for side in (-1.0, 1.0):
             outer, inner = side * half, side * (half - width)
             feet = np.array([(outer, level), (inner, level)])
@@ -200,8 +200,8 @@ class LayoutBuilder:
                 foot + normal * min(max(height, _MIN_THICKNESS * thick), thick + free)
                 for height, foot in zip(heights, feet, strict=True)
             ]
-            found.append(np.array([feet[0], feet[1], tops[1], tops[0]]))
-        return tuple(found), placement.bearing()
+            outlines.append(np.array([feet[0], feet[1], tops[1], tops[0]]))
+        return tuple(outlines), placement.bearing()
 
     def _soil_surface(self, placement: Placement) -> tuple[Array | None, tuple[Array, ...]]:
         """Return the surface of the soil, which follows the base up to its free level."""
@@ -274,14 +274,14 @@ class SceneArtist:
         for side in ("top", "right"):
             axes.spines[side].set_visible(False)
 
-    def set_limits(self, shown: Iterable[Placement]) -> None:
+    def set_limits(self, placements: Iterable[Placement]) -> None:
         """Set limits that contain the scene and the marked points at all instants."""
         wall = self.builder.geometry.wall
         shown_parts = [] if wall is None else [wall]
-        for placement in shown:
-            one = self.builder.layout_at(placement)
-            shown_parts += (one.block, one.ground, *one.lower_bodies)
-            shown_parts += (*one.restrainers, *one.frame_parts)
+        for placement in placements:
+            layout = self.builder.layout_at(placement)
+            shown_parts += (layout.block, layout.ground, *layout.lower_bodies)
+            shown_parts += (*layout.restrainers, *layout.frame_parts)
             places = self._points.values()
             shown_parts += (self.builder.points_at(placement, place) for place in places)
         corners = np.vstack(shown_parts)
@@ -323,8 +323,8 @@ class SceneArtist:
         self._draw_polygon("block", layout.block, BLUE, 4, alpha=0.08 if layout.members else 0.22)
         for number, member in enumerate(layout.members):
             self._draw_polygon(f"member {number}", member, BLUE, 4, alpha=0.3)
-        for number, other in enumerate(layout.frame_parts):
-            self._draw_polygon(f"other {number}", other, BLUE, 4, alpha=0.22)
+        for number, outline in enumerate(layout.frame_parts):
+            self._draw_polygon(f"other {number}", outline, BLUE, 4, alpha=0.22)
         for number, ends in enumerate(layout.restrainers):
             self._draw_line(
                 f"tie {number}", ends, color=VERMILLION, linewidth=1.4, zorder=5, marker="."
@@ -359,11 +359,11 @@ class SceneArtist:
         self._draw_line("surface", layout.ground, color=text_colour(), linewidth=1.0, zorder=2)
 
     def _draw_contacts(self, layout: Layout) -> None:
-        dots = [one for one in layout.contacts if len(one) == 1]
-        lines = [one for one in layout.contacts if len(one) > 1]
+        dots = [contact for contact in layout.contacts if len(contact) == 1]
+        lines = [contact for contact in layout.contacts if len(contact) > 1]
         points = np.vstack(dots or [_NO_POINT])
         self._draw_dots("touching", points, color=CONTACT_COLOUR, markersize=6.0)
-        apart = [part for one in lines for part in (one, _NO_POINT)] or [_NO_POINT]
+        apart = [part for line in lines for part in (line, _NO_POINT)] or [_NO_POINT]
         self._draw_line(
             "bearing", np.vstack(apart), color=CONTACT_COLOUR, linewidth=3.0, zorder=5,
             solid_capstyle="butt",
@@ -409,15 +409,15 @@ _DRAWN_ARGUMENTS: Final = ("name", "on", "to", "on_body", "to_body", "depth")
 
 def part_labels(parts: Parts, geometry: Geometry, units: DisplayUnits) -> dict[str, str]:
     """Return the names of the parts of a scene, with their parameters, by their slots."""
-    found: dict[str, list[str]] = {}
+    labels: dict[str, list[str]] = {}
     for slot in ("block", "wall", "pads", "cap", "soil"):
         part = parts.components.get(slot)
         if part is not None:
-            found[slot] = [type(part).__name__, *_parameter_texts(part, units)]
+            labels[slot] = [type(part).__name__, *_parameter_texts(part, units)]
     if parts.frame is not None:
-        column = [f"column {one}" for one in _parameter_texts(parts.frame.column, units)]
-        own = _parameter_texts(parts.frame, units)
-        found["block"] = [type(parts.frame).__name__, *column, *own]
+        column = [f"column {text}" for text in _parameter_texts(parts.frame.column, units)]
+        frame_texts = _parameter_texts(parts.frame, units)
+        labels["block"] = [type(parts.frame).__name__, *column, *frame_texts]
     if parts.stack is not None:
         bases = [*parts.stack.interfaces, None]
         for k, (body, base) in enumerate(zip(parts.stack.bodies, bases, strict=True)):
@@ -427,25 +427,28 @@ def part_labels(parts: Parts, geometry: Geometry, units: DisplayUnits) -> dict[s
                 lines += _wrapped_lines(
                     [f"on {type(base).__name__}", *_parameter_texts(base, units)]
                 )
-            found[f"stack {k - 1}" if k else "block"] = lines
-    if parts.stack is not None and "pads" in found:  # pads are not drawn below a stack
-        found["ground"] = found.pop("pads")
+            labels[f"stack {k - 1}" if k else "block"] = lines
+    if parts.stack is not None and "pads" in labels:  # pads are not drawn below a stack
+        labels["ground"] = labels.pop("pads")
     elif geometry.soil_settlement is None:
-        found["ground"] = ["rigid ground", *_parameter_texts(parts.components.get("ground"), units)]
+        labels["ground"] = [
+            "rigid ground",
+            *_parameter_texts(parts.components.get("ground"), units),
+        ]
     for number, (name, link) in enumerate(parts.named_links):
         lines = [as_label(name), *_parameter_texts(link, units, _DRAWN_ARGUMENTS)]
         if number < len(geometry.links):
-            found[f"tie {number}"] = lines[:1] if link is parts.wall else lines
+            labels[f"tie {number}"] = lines[:1] if link is parts.wall else lines
         elif isinstance(link, Load):  # not drawn, therefore listed with its body
             body = link.si.on_body - 1
-            found[f"stack {body - 1}" if body else "block"] += _wrapped_lines(lines)
-    words = {slot: with_superscripts("\n   ".join(lines)) for slot, lines in found.items()}
+            labels[f"stack {body - 1}" if body else "block"] += _wrapped_lines(lines)
+    words = {slot: with_superscripts("\n   ".join(lines)) for slot, lines in labels.items()}
     return {**words, "centre": "centre of mass", "touching": "contact"}
 
 
 def _wrapped_lines(words: Sequence[str]) -> list[str]:
-    whole = ", ".join(words).replace(" ", NO_BREAK).replace(f",{NO_BREAK}", ", ")
-    return [line.replace(NO_BREAK, " ") for line in wrap(whole, _LINE_LENGTH)]
+    text = ", ".join(words).replace(" ", NO_BREAK).replace(f",{NO_BREAK}", ", ")
+    return [line.replace(NO_BREAK, " ") for line in wrap(text, _LINE_LENGTH)]
 
 
 def _parameter_texts(
@@ -454,10 +457,12 @@ def _parameter_texts(
     """Write the parameters of a part, in the reader's units if these are chosen."""
     if part is None:
         return []
-    arguments = {name: one for name, one in part.to_dict().items() if name not in without}
-    found = readable_arguments({name: one for name, one in arguments.items() if one != "0.0 N"})
-    for name, one in arguments.items():
-        sentence = units.convert_text(str(one))
-        if sentence != str(one):
-            found[name.replace("_", " ")] = sentence
-    return [f"{name} {words}" for name, words in found.items()]
+    arguments = {name: argument for name, argument in part.to_dict().items() if name not in without}
+    texts = readable_arguments(
+        {name: argument for name, argument in arguments.items() if argument != "0.0 N"}
+    )
+    for name, argument in arguments.items():
+        sentence = units.convert_text(str(argument))
+        if sentence != str(argument):
+            texts[name.replace("_", " ")] = sentence
+    return [f"{name} {words}" for name, words in texts.items()]

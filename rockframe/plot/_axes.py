@@ -67,7 +67,9 @@ def add_legend(axes: "Axes", entries: tuple[Any, Any] | None = None, **style: An
         style |= {"title": common, "title_fontsize": "small"} if common else {}
     title = str(style.get("title", ""))
     length = int((0.95 * width - _HANDLE_WIDTH) / _LETTER_WIDTH)
-    words = [one if "$" in one else as_label(one, max(length, _MIN_LABEL_LENGTH)) for one in words]
+    words = [
+        word if "$" in word else as_label(word, max(length, _MIN_LABEL_LENGTH)) for word in words
+    ]
     entry = _HANDLE_WIDTH + _LETTER_WIDTH * max(map(len, words))
     columns = int(np.clip((0.95 * width) // entry, 1, max(1, len(words))))
     rows = -(-len(words) // columns) + bool(title)
@@ -88,10 +90,12 @@ def add_legend(axes: "Axes", entries: tuple[Any, Any] | None = None, **style: An
 
 def split_common_parts(words: list[str]) -> tuple[str, list[str]]:
     """Split labels at commas into the parts that they have in common, and the other parts."""
-    parts = [one.split(", ") for one in words]
-    common = [one for one in parts[0] if all(one in other for other in parts)]
-    rest = [", ".join(one for one in other if one not in common) for other in parts]
-    return (", ".join(common), rest) if all(rest) else ("", words)
+    parts = [word.split(", ") for word in words]
+    common = [part for part in parts[0] if all(part in label_parts for label_parts in parts)]
+    remainders = [
+        ", ".join(part for part in label_parts if part not in common) for label_parts in parts
+    ]
+    return (", ".join(common), remainders) if all(remainders) else ("", words)
 
 
 def escape_mathtext(text: str) -> str:
@@ -112,9 +116,9 @@ def as_label(name: str, max_length: int = _MAX_LABEL_LENGTH) -> str:
 
 def unique_labels(names: Iterable[str], max_length: int = _MAX_LABEL_LENGTH) -> list[str]:
     """Return names as :func:`as_label` does, numbered if they would be equal."""
-    found = [as_label(name, max_length) for name in names]
-    has_duplicates = len(set(found)) < len(found)
-    return [f"{k}: {one}" for k, one in enumerate(found, 1)] if has_duplicates else found
+    labels = [as_label(name, max_length) for name in names]
+    has_duplicates = len(set(labels)) < len(labels)
+    return [f"{k}: {label}" for k, label in enumerate(labels, 1)] if has_duplicates else labels
 
 
 def text_colour() -> Any:

@@ -168,14 +168,14 @@ def _function_for(dataset: xr.Dataset) -> str | None:
 
 def figure_function_name(dataset: xr.Dataset) -> str:
     """Return the function that draws a dataset."""
-    if (known := _function_for(dataset)) is not None:
-        return known
+    if (function := _function_for(dataset)) is not None:
+        return function
     if _has_variables(dataset, ("relative_rotation", "time", "contact_state")):
         return "response"
     if "peak_relative_rotation" in dataset and dataset["peak_relative_rotation"].ndim > 0:
         return "sweep"
-    if (found := _describe_undrawn(dataset)) is not None:
-        msg = f"no function of rf.plot draws {found[0]}; {found[1]}"
+    if (undrawn := _describe_undrawn(dataset)) is not None:
+        msg = f"no function of rf.plot draws {undrawn[0]}; {undrawn[1]}"
         raise SchemaError(msg)
     msg = (
         "no function of rf.plot draws this dataset; known are results of runs, sweeps, studies "
@@ -201,13 +201,13 @@ def checked_run(value: object, function: str) -> xr.Dataset:
     if more:
         way = f"pick one, for example with dataset.isel({more[0]}=0)"
         raise _mismatch_error(function, f"several runs over {', '.join(more)}; {way}")
-    known = np.flatnonzero(~np.isnan(value["relative_rotation"].to_numpy()))
-    if not len(known):
+    samples = np.flatnonzero(~np.isnan(value["relative_rotation"].to_numpy()))
+    if not len(samples):
         raise _mismatch_error(function, "a case without a result")
-    if known[-1] < 1:
+    if samples[-1] < 1:
         way = "simulate for longer, or with a shorter output_step"
         raise _mismatch_error(function, f"one of a single instant; {way}")
-    return value.isel(time=slice(int(known[-1]) + 1))
+    return value.isel(time=slice(int(samples[-1]) + 1))
 
 
 def figure_data(value: object, function: str, units: UnitsLike = None) -> xr.Dataset:
@@ -281,15 +281,15 @@ def _describe_value(function: str, value: object) -> tuple[str, str]:
         return "a case of a sweep", "rf.plot.response(case.simulate()) draws its response"
     if not isinstance(value, xr.Dataset):
         return f"{value!r}" if value is None else f"a value of type {type(value).__name__}", ""
-    if (known := _function_for(value)) is not None:
-        return f"a Dataset with {KINDS[known].name}", f"rf.plot.{known} draws it"
+    if (drawing := _function_for(value)) is not None:
+        return f"a Dataset with {KINDS[drawing].name}", f"rf.plot.{drawing} draws it"
     if "overturned" in value and value["overturned"].ndim > 0:
         way = "rf.plot.sweep draws it"
         if SWEEP_ATTRIBUTE in value.attrs and _required_data(function) == RUN.description:
             way += ", rf.case(dataset, ...).simulate() runs one of them with histories"
         return "a Dataset with many runs", way
-    if (found := _describe_undrawn(value)) is not None:
-        return found
+    if (undrawn := _describe_undrawn(value)) is not None:
+        return undrawn
     title = value.attrs.get("title")
     return "a Dataset" + (f" with the title {title!r}" if title else " of another kind"), ""
 

@@ -140,8 +140,8 @@ def _flip_intensities(dataset: xr.Dataset, intensity: xr.DataArray) -> list[np.n
     """Return the intensities at which the verdict on each motion changes."""
     scales = dataset["scale"].to_numpy()
     above = dataset["scale_above"].isel(limit_state=-1).transpose("motion", ...).to_numpy()
-    each = zip(above, intensity.transpose("motion", ...).to_numpy(), strict=True)
-    return [at_scales(along, scales, flips[~np.isnan(flips)]) for flips, along in each]
+    pairs = zip(above, intensity.transpose("motion", ...).to_numpy(), strict=True)
+    return [at_scales(along, scales, flips[~np.isnan(flips)]) for flips, along in pairs]
 
 
 def _draw_peaks(
@@ -150,11 +150,13 @@ def _draw_peaks(
     """Draw the peaks of the motions, and the fractiles of four motions or more."""
     several, lines = dataset.sizes["motion"] >= _MIN_FRACTILE_MOTIONS, list[tuple[Any, Any]]()
     for number, places in enumerate(flips):
-        one, along = dataset.isel(motion=number), intensity.isel(motion=number).to_numpy()
-        line = _peaks_with_flips(along, one["peak_relative_rotation"].to_numpy(), places)
+        curve, along = dataset.isel(motion=number), intensity.isel(motion=number).to_numpy()
+        line = _peaks_with_flips(along, curve["peak_relative_rotation"].to_numpy(), places)
         colour = GREY if several else line_colour(number)
         words = (
-            ("motions" if number == 0 else None) if several else as_label(str(one["motion"].item()))
+            ("motions" if number == 0 else None)
+            if several
+            else as_label(str(curve["motion"].item()))
         )
         axes.plot(line[1], line[0], color=colour, lw=0.7, label=words)
         for some, face in ((places[:1], colour), (places[1:], "none")):
@@ -166,7 +168,7 @@ def _draw_peaks(
         for number, (share, values) in enumerate(fractiles):
             words, style = f"{100.0 * share:.0f} %", line_style(_FRACTILE_STYLES[number])
             axes.plot(values, up, color=VERMILLION, ls=style, lw=1.6, label=words)
-        if np.min([one[-1] for _, one in fractiles]) < PEAK_CAP:
+        if np.min([peaks[-1] for _, peaks in fractiles]) < PEAK_CAP:
             axes.axhline(up[-1], color=VERMILLION, ls=":", lw=0.8, label=_END_LABEL)
     axes.set(xlabel=r"peak of $|\alpha|/\theta$ [-]", xlim=(0.0, 1.03))
 
@@ -174,12 +176,12 @@ def _draw_peaks(
 def _draw_shares(axes: Axes, dataset: xr.Dataset, intensity: xr.DataArray) -> None:
     """Draw the share of the motions whose capacity is below an intensity."""
     scales = dataset["scale"].to_numpy()
-    each = intensity.transpose("motion", "scale").to_numpy()
+    intensities = intensity.transpose("motion", "scale").to_numpy()
     for number, state in enumerate(dataset["limit_state"].to_numpy()):
         capacity = dataset["capacity_scale"].isel(limit_state=number).to_numpy()
         places = [
             at_scales(along, scales, scale)
-            for scale, along in zip(capacity, each, strict=True)
+            for scale, along in zip(capacity, intensities, strict=True)
             if np.isfinite(scale)
         ]
         ordered = np.sort(np.array([0.0, *places]))
@@ -243,22 +245,24 @@ def fractile_curves(
     runs = data["motion_response"].transpose("motion", name).to_numpy()
     finite = runs[np.isfinite(runs)]
     right = _AXIS_MARGIN * max(float(levels[-1]), float(finite.max(initial=0.0)))
-    for number, one in enumerate(runs):
+    for number, fractile in enumerate(runs):
         words = "motions" if number == 0 else None
-        axes.plot(np.where(np.isfinite(one), one, np.nan), up, color=GREY, lw=0.7, label=words)
-        overturned = np.isinf(one)
+        axes.plot(
+            np.where(np.isfinite(fractile), fractile, np.nan), up, color=GREY, lw=0.7, label=words
+        )
+        overturned = np.isinf(fractile)
         starts = np.flatnonzero(overturned[1:] & ~overturned[:-1])
-        axes.plot(one[starts], up[starts + 1], "o", color=GREY, ms=3)
+        axes.plot(fractile[starts], up[starts + 1], "o", color=GREY, ms=3)
     shares = data["quantile"].to_numpy().round(9).tolist()
     for number, share in enumerate(shares):
         colour, words = line_colour(number), f"{100.0 * share:.3g} %"
         # a high fractile of the response corresponds to a low one of the intensity
         complement = round(1.0 - share, 9)
         paired = line_colour(shares.index(complement)) if complement in shares else colour
-        one = data.isel(quantile=number)
-        of_response = np.minimum(one["response_fractile"].to_numpy(), 2.0 * right)
+        fractile = data.isel(quantile=number)
+        of_response = np.minimum(fractile["response_fractile"].to_numpy(), 2.0 * right)
         axes.plot(of_response, up, color=colour, lw=1.6, label=f"{words} of responses")
-        reached = one["intensity_fractile"].where(np.isfinite)
+        reached = fractile["intensity_fractile"].where(np.isfinite)
         axes.plot(levels, reached, color=paired, lw=1.4, ls="--", label=f"{words} of intensities")
     words = str(data.attrs["response"])
     axes.set(
@@ -305,13 +309,15 @@ def cloud(
     sheet = make_single_panel(ax, "cloud", (6.0, 4.3))
     axes = sheet.axes
     name = str(data.attrs["intensity"])
-    intensity, response = (data[f"cloud_{one}"].to_numpy() for one in ("intensity", "response"))
+    intensity, response = (
+        data[f"cloud_{quantity}"].to_numpy() for quantity in ("intensity", "response")
+    )
     overturned, at_rest = np.isinf(response), response == 0.0
     finite_response = ~overturned & ~at_rest
     limits = data["response_limit"].to_numpy()
     limits = limits[np.isfinite(limits)]
-    shown = np.concatenate([response[finite_response], limits])
-    low, high = (shown.min() / 1.6, shown.max() * 1.6) if len(shown) else (0.1, 1.0)
+    responses = np.concatenate([response[finite_response], limits])
+    low, high = (responses.min() / 1.6, responses.max() * 1.6) if len(responses) else (0.1, 1.0)
     for part, heights, marker, colour, size, words in (
         (finite_response, response, "o", GREY, 3.5, "runs"),
         (overturned, np.full_like(response, high), "^", COLOURS[1], 5, "overturned"),
@@ -328,8 +334,8 @@ def cloud(
         for size in (1.0, 2.0):
             ends = (np.exp(log_median + sign * size * spread) for sign in (-1.0, 1.0))
             axes.fill_between(x, *ends, color=COLOURS[0], alpha=0.12, linewidth=0.0)
-    for one in limits:
-        axes.axhline(one, color="0.3", lw=0.8, ls=":")
+    for limit in limits:
+        axes.axhline(limit, color="0.3", lw=0.8, ls=":")
     response_name = data["cloud_response"].rename(str(data.attrs["response"]))
     axes.set(
         xscale="log", yscale="log", ylim=(low / 1.3, high * 1.3),
@@ -386,15 +392,17 @@ def annual_rate(
     step = logs[1] - logs[0]
     edges = np.exp(np.append(logs - 0.5 * step, logs[-1] + 0.5 * step))
     for number in range(data.sizes["limit_state"]):
-        one = data.isel(limit_state=number)
+        rates = data.isel(limit_state=number)
         state = (
-            as_label(str(one["limit_state"].item())) if "limit_state" in one.coords else "counted"
+            as_label(str(rates["limit_state"].item()))
+            if "limit_state" in rates.coords
+            else "counted"
         )
-        rate = float(one["annual_rate"])
+        rate = float(rates["annual_rate"])
         if np.isnan(rate):
             continue
         axes.stairs(
-            100.0 * one["rate_share"].to_numpy(), edges, color=line_colour(number), lw=1.4,
+            100.0 * rates["rate_share"].to_numpy(), edges, color=line_colour(number), lw=1.4,
             fill=True, alpha=0.35, label=f"{state}: {rate:.3g} a year",
         )  # fmt: skip
     axes.set(

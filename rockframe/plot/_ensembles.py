@@ -104,16 +104,16 @@ def probability(
         left.text(0.5, 0.5, "all verdicts are alike", ha="center", transform=left.transAxes)
     first = data[str(data["parameter"].to_numpy()[0])]
     verdict = overturns(data).to_numpy()
-    known = ~np.isnan(verdict)
+    decided = ~np.isnan(verdict)
     if first.dtype.kind == "f":
-        cuts = np.quantile(first.to_numpy()[known], np.linspace(0.0, 1.0, 13))
-        place = np.clip(np.searchsorted(cuts, first.to_numpy()[known], side="right") - 1, 0, 11)
-        shares = [verdict[known][place == k].mean() for k in range(12)]
+        cuts = np.quantile(first.to_numpy()[decided], np.linspace(0.0, 1.0, 13))
+        place = np.clip(np.searchsorted(cuts, first.to_numpy()[decided], side="right") - 1, 0, 11)
+        shares = [verdict[decided][place == k].mean() for k in range(12)]
         right.stairs(shares, cuts, fill=True, color=COLOURS[1], alpha=0.6)
         right.set(xlabel=variable_label(first))
     else:
-        labels, place = np.unique(first.to_numpy()[known].astype(str), return_inverse=True)
-        shares = [verdict[known][place == k].mean() for k in range(len(labels))]
+        labels, place = np.unique(first.to_numpy()[decided].astype(str), return_inverse=True)
+        shares = [verdict[decided][place == k].mean() for k in range(len(labels))]
         right.bar(range(len(labels)), shares, color=COLOURS[1], alpha=0.6)
         right.set(xlabel="motion")
         if len(labels) <= _MAX_NAMED:
@@ -154,11 +154,11 @@ def subset_simulation(
     data = figure_data(dataset, "subset_simulation", units)
     sheet = make_single_panel(ax, "subset_simulation", (6.0, 4.1))
     axes = sheet.axes
-    known = data["demand"].notnull().to_numpy()
-    demand = data["demand"].to_numpy()[known]
+    drawn = data["demand"].notnull().to_numpy()
+    demand = data["demand"].to_numpy()[drawn]
     order = np.argsort(-demand, kind="stable")
-    demand, level = demand[order], data["sample_level"].to_numpy()[known][order]
-    reached = np.cumsum(data["sample_weight"].to_numpy()[known][order])
+    demand, level = demand[order], data["sample_level"].to_numpy()[drawn][order]
+    reached = np.cumsum(data["sample_weight"].to_numpy()[drawn][order])
     finite = np.isfinite(demand)
     # the last of several samples with equal demand has the weight of all of them
     last = np.flatnonzero(finite & np.append(demand[1:] != demand[:-1], True))
@@ -247,26 +247,30 @@ def fragility(
     _check_structures(states[0], structures, 1 if len(measures) > 1 else _MAX_STRUCTURES)
     if len(measures) == 1 and not structures:
         sheet = make_single_panel(ax, "fragility", (6.0, 4.1))
-        _draw_curves(sheet.axes, [(_limit_state_label(one), one) for one in states], measures[0])
+        _draw_curves(
+            sheet.axes, [(_limit_state_label(state), state) for state in states], measures[0]
+        )
     elif structures:
         sheet = _limit_state_panels(ax, states)
-        for axes, one in zip(sheet.panels, states, strict=True):
-            _draw_curves(axes, _labelled_structures(one, structures), measures[0])
-            axes.set_title(_limit_state_label(one))
+        for axes, state in zip(sheet.panels, states, strict=True):
+            _draw_curves(axes, _labelled_structures(state, structures), measures[0])
+            axes.set_title(_limit_state_label(state))
     else:
         fitted = FragilityStatus.FITTED
-        drawn = [one for one in states if int(one["fragility_status"]) == fitted] or states[-1:]
+        drawn = [state for state in states if int(state["fragility_status"]) == fitted] or states[
+            -1:
+        ]
         sheet = _limit_state_panels(ax, drawn)
-        for axes, one in zip(sheet.panels, drawn, strict=True):
-            _draw_contours(axes, one, measures)
+        for axes, state in zip(sheet.panels, drawn, strict=True):
+            _draw_contours(axes, state, measures)
     if len(measures) == 1:
         sheet.add_common_legend()
     sheet.set_title(with_superscripts(verdict_of_fragility(data)), title)
     return sheet.axes if len(measures) == 1 and not structures else sheet.panels
 
 
-def _check_structures(one: xr.Dataset, structures: list[str], max_count: int) -> None:
-    count = int(np.prod([one.sizes[dim] for dim in structures]))
+def _check_structures(state: xr.Dataset, structures: list[str], max_count: int) -> None:
+    count = int(np.prod([state.sizes[dim] for dim in structures]))
     if count > max_count:
         msg = (
             f"rf.plot.fragility: found {count} structures, by {', '.join(structures)}; a figure "
@@ -278,48 +282,50 @@ def _check_structures(one: xr.Dataset, structures: list[str], max_count: int) ->
 def _limit_state_panels(ax: AxesLike, states: list[xr.Dataset]) -> Sheet:
     """Return a panel for each limit state."""
     return make_sheet(
-        ax, "fragility", [_limit_state_label(one) for one in states],
+        ax, "fragility", [_limit_state_label(state) for state in states],
         (0.8 + 3.6 * len(states), 3.8),
         lambda figure: figure.subplots(1, len(states)),
     )  # fmt: skip
 
 
-def _labelled_structures(one: xr.Dataset, structures: list[str]) -> list[tuple[str, xr.Dataset]]:
+def _labelled_structures(state: xr.Dataset, structures: list[str]) -> list[tuple[str, xr.Dataset]]:
     """Return each structure with its label."""
-    found: list[tuple[str, xr.Dataset]] = []
-    for place in np.ndindex(*(one.sizes[dim] for dim in structures)):
-        part = one.isel(dict(zip(structures, place, strict=True)))
+    labelled: list[tuple[str, xr.Dataset]] = []
+    for place in np.ndindex(*(state.sizes[dim] for dim in structures)):
+        part = state.isel(dict(zip(structures, place, strict=True)))
         words = [
             f"{str(name).replace('_', ' ')} {value_label(part[name])}"
-            for name in one.coords
-            if set(one[name].dims) & set(structures)
+            for name in state.coords
+            if set(state[name].dims) & set(structures)
         ]
-        found.append((", ".join(words), part))
-    return found
+        labelled.append((", ".join(words), part))
+    return labelled
 
 
 def _draw_curves(axes: Axes, named: list[tuple[str, xr.Dataset]], measure: str) -> None:
-    for number, (name, one) in enumerate(named):
+    for number, (name, curve) in enumerate(named):
         colour, dashes = line_colour(number), line_style(number // len(COLOURS))
-        along = one[measure].to_numpy()
-        if int(one["fragility_status"]) in _FITTED_STATUSES:
+        along = curve[measure].to_numpy()
+        if int(curve["fragility_status"]) in _FITTED_STATUSES:
             low, high = (
-                one[f"{_PROBABILITY}_{end}_bound"].to_numpy() for end in ("lower", "upper")
+                curve[f"{_PROBABILITY}_{end}_bound"].to_numpy() for end in ("lower", "upper")
             )
             axes.fill_between(along, low, high, color=colour, alpha=0.15, linewidth=0.0)
-            separated = int(one["fragility_status"]) == FragilityStatus.SEPARATED
+            separated = int(curve["fragility_status"]) == FragilityStatus.SEPARATED
             words = f"{name}: separated" if separated else name
             axes.plot(
-                along, one[_PROBABILITY].to_numpy(), color=colour, linestyle=dashes, label=words
+                along, curve[_PROBABILITY].to_numpy(), color=colour, linestyle=dashes, label=words
             )
         else:
             axes.plot([], [], color=colour, label=f"{name}: no fit")
-        fraction = one["stripe_fraction"].to_numpy()
-        bounds = [one[f"stripe_fraction_{end}_bound"].to_numpy() for end in ("lower", "upper")]
+        fraction = curve["stripe_fraction"].to_numpy()
+        bounds = [curve[f"stripe_fraction_{end}_bound"].to_numpy() for end in ("lower", "upper")]
         errors = np.abs(np.stack(bounds) - fraction)
-        errors[:, one["stripe_trials"].to_numpy() < 2] = np.nan  # no bounds from a single trial
+        errors[:, curve["stripe_trials"].to_numpy() < 2] = np.nan  # no bounds from a single trial
         # side by side, since limit states are counted at the same intensities
-        intensity = one["stripe_intensity"].to_numpy() * 1.012 ** (number - 0.5 * (len(named) - 1))
+        intensity = curve["stripe_intensity"].to_numpy() * 1.012 ** (
+            number - 0.5 * (len(named) - 1)
+        )
         axes.errorbar(
             intensity, fraction, yerr=errors, fmt="o", color=colour, ms=3.0, lw=0.8, alpha=0.7
         )
@@ -328,17 +334,19 @@ def _draw_curves(axes: Axes, named: list[tuple[str, xr.Dataset]], measure: str) 
     grid(axes)
 
 
-def _draw_contours(axes: Axes, one: xr.Dataset, measures: list[str]) -> None:
+def _draw_contours(axes: Axes, state: xr.Dataset, measures: list[str]) -> None:
     across, up = measures
-    drawn = one[across], one[up], one[_PROBABILITY].transpose(up, across)
+    drawn = state[across], state[up], state[_PROBABILITY].transpose(up, across)
     axes.contourf(*drawn, levels=np.linspace(0.0, 1.0, 21), cmap="Blues", alpha=0.5)
     lines = axes.contour(*drawn, levels=_CONTOUR_LEVELS, colors=COLOURS[0], linewidths=0.9)
     for label in axes.clabel(lines, fontsize="small", fmt="%.2f", inline_spacing=2, colors="black"):
         label.set_bbox({"facecolor": "white", "alpha": 0.85, "edgecolor": "none", "pad": 0.6})
         label.set_rotation(0.0)
-    axes.set(xlabel=intensity_label(one[across], one), title=_limit_state_label(one))
-    axes.set_ylabel(intensity_label(one[up], one))
+    axes.set(xlabel=intensity_label(state[across], state), title=_limit_state_label(state))
+    axes.set_ylabel(intensity_label(state[up], state))
 
 
-def _limit_state_label(one: xr.Dataset) -> str:
-    return as_label(str(one["limit_state"].item())) if "limit_state" in one.coords else "counted"
+def _limit_state_label(state: xr.Dataset) -> str:
+    return (
+        as_label(str(state["limit_state"].item())) if "limit_state" in state.coords else "counted"
+    )

@@ -31,11 +31,11 @@ def warn_of_letters_once(drawing: Callable[_P, _T]) -> Callable[_P, _T]:
         lost = dict[str, None]()
         token = _missing_letters.set(lost)
         try:
-            found = drawing(*args, **kwargs)
+            figure = drawing(*args, **kwargs)
         finally:
             _missing_letters.reset(token)
         _warn(lost, "the figures")
-        return found
+        return figure
 
     return wrapped
 
@@ -52,14 +52,16 @@ def add_fallback_fonts(artists: "Iterable[Axes | Figure | SubFigure]") -> None:
         words, families = str(text.get_text()), list(text.get_fontfamily())
         paths = _font_files(families)
         missing = frozenset(
-            one for one in words if not one.isspace() and not any(_has_glyph(p, one) for p in paths)
+            letter
+            for letter in words
+            if not letter.isspace() and not any(_has_glyph(p, letter) for p in paths)
         )
         if not missing:
             continue
         fonts = _fallback_fonts(missing, len(fontManager.ttflist))
         text.set_fontfamily([*families, *dict.fromkeys(fonts.values())])
-        without = [one for one in words if one in missing and one not in fonts]
-        text.set_text("".join("?" if one in without else one for one in words))
+        without = [letter for letter in words if letter in missing and letter not in fonts]
+        text.set_text("".join("?" if letter in without else letter for letter in words))
         unsupported |= dict.fromkeys(without)
     collected = _missing_letters.get()
     if collected is None:
@@ -86,21 +88,21 @@ def _non_ascii_texts(artists: "Iterable[Axes | Figure | SubFigure]") -> list[Any
     """Return the texts with letters beyond ASCII."""
     from matplotlib.text import Text
 
-    found: list[Any] = [one for artist in artists for one in artist.findobj(Text)]
-    return [one for one in found if not str(one.get_text()).isascii()]
+    texts: list[Any] = [text for artist in artists for text in artist.findobj(Text)]
+    return [text for text in texts if not str(text.get_text()).isascii()]
 
 
 def _font_files(families: Iterable[str]) -> list[str]:
     """Return the files of those fonts that are installed."""
     from matplotlib.font_manager import FontProperties, findfont
 
-    found: list[str] = []
+    files: list[str] = []
     for family in families:
         try:
-            found.append(str(findfont(FontProperties(family=[family]), fallback_to_default=False)))
+            files.append(str(findfont(FontProperties(family=[family]), fallback_to_default=False)))
         except ValueError:
             continue
-    return found
+    return files
 
 
 @lru_cache(maxsize=64)
@@ -112,16 +114,18 @@ def _fallback_fonts(letters: frozenset[str], installed: int) -> dict[str, str]:
         regular = font.weight in (400, "normal", "regular", "book")
         return font.style != "normal", not regular, "serif" in font.name.lower(), font.name
 
-    found: dict[str, str] = {}
+    fonts: dict[str, str] = {}
     for font in sorted(fontManager.ttflist[:installed], key=rank):
         if font.name.startswith(_LAST_RESORT):
             continue
-        found |= {
-            one: font.name for one in letters if one not in found and _has_glyph(font.fname, one)
+        fonts |= {
+            letter: font.name
+            for letter in letters
+            if letter not in fonts and _has_glyph(font.fname, letter)
         }
-        if len(found) == len(letters):
+        if len(fonts) == len(letters):
             break
-    return found
+    return fonts
 
 
 @lru_cache(maxsize=4096)

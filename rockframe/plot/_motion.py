@@ -50,32 +50,34 @@ def motions_title(values: list[LabelledMotion]) -> str:
     """Return the title of a figure: the name of a single motion, otherwise none."""
     if len(values) != 1:
         return ""
-    (one,) = values
-    return display_name(one.motion.name, one.motion.history)
+    (labelled,) = values
+    return display_name(labelled.motion.name, labelled.motion.history)
 
 
 def labelled_motions(value: object, function: str) -> list[LabelledMotion]:
     """Read one or several motions."""
     by_label: dict[str, Any] = {}
     if isinstance(value, Mapping):
-        by_label = {str(key): one for key, one in value.items()}
+        by_label = {str(key): ground_motion for key, ground_motion in value.items()}
     elif isinstance(value, list | tuple):
         names = [
-            display_name(str(getattr(one, "name", "")), getattr(one, "history", ()))
-            for one in value
+            display_name(
+                str(getattr(ground_motion, "name", "")), getattr(ground_motion, "history", ())
+            )
+            for ground_motion in value
         ]
         has_duplicates = len(set(names)) < len(names)
         by_label = {
-            f"{name} ({number})" if has_duplicates else name: one
-            for number, (name, one) in enumerate(zip(names, value, strict=True), start=1)
+            f"{name} ({number})" if has_duplicates else name: ground_motion
+            for number, (name, ground_motion) in enumerate(zip(names, value, strict=True), start=1)
         }
     labels: list[Any] = unique_labels(by_label) or [None]
     motions: list[Any] = [*by_label.values()] or [value]
-    if not all(isinstance(one, GroundMotion) for one in motions):
+    if not all(isinstance(ground_motion, GroundMotion) for ground_motion in motions):
         raise ComponentError(mismatch_message(function, value))
     return [
-        LabelledMotion(one, label, line_colour(number), line_style(number))
-        for number, (label, one) in enumerate(zip(labels, motions, strict=True))
+        LabelledMotion(ground_motion, label, line_colour(number), line_style(number))
+        for number, (label, ground_motion) in enumerate(zip(labels, motions, strict=True))
     ]
 
 
@@ -135,7 +137,7 @@ def motion(
         axis_units.axis_unit(VELOCITY, velocity=velocity),
         axis_units.axis_unit(LENGTH, displacement=displacement),
     )
-    histories = [_within_window(velocity_and_displacement(one.motion), limits) for one in data]
+    histories = [_within_window(velocity_and_displacement(curve.motion), limits) for curve in data]
     vertical_history = None
     if len(data) == 1 and data[0].motion.si.vertical is not None:
         vertical_history = _within_window(
@@ -149,11 +151,11 @@ def motion(
         if vertical_history is not None:
             values = unit.of(vertical_history[f"vertical_ground_{name}"])
             axes.plot(vertical_history["time"], values, color=GREY, lw=0.8, label="vertical")
-        for one, history in zip(data, histories, strict=True):
-            single = one.label is None
+        for curve, history in zip(data, histories, strict=True):
+            single = curve.label is None
             axes.plot(
-                history["time"], unit.of(history[f"ground_{name}"]), linestyle=one.style, lw=0.8,
-                color=colour if single else one.colour, label=one.label or "horizontal",
+                history["time"], unit.of(history[f"ground_{name}"]), linestyle=curve.style, lw=0.8,
+                color=colour if single else curve.colour, label=curve.label or "horizontal",
             )  # fmt: skip
             if single:
                 _mark_peak(axes, history, f"ground_{name}", unit, colour)

@@ -65,8 +65,8 @@ def overturning_map(
     from matplotlib.patches import Patch
 
     data = figure_data(dataset, "overturning_map", units)
-    shown = figure_units(units, "overturning_map").reader.chosen_unit(ACCELERATION) is not None
-    relative = "relative_peak_ground_acceleration" in data.coords and not shown
+    in_units = figure_units(units, "overturning_map").reader.chosen_unit(ACCELERATION) is not None
+    relative = "relative_peak_ground_acceleration" in data.coords and not in_units
     across = data["relative_pulse_frequency" if relative else "frequency"]
     up = data["relative_peak_ground_acceleration" if relative else "amplitude"]
     impact_count = int(data.attrs["impacts_told_apart"])
@@ -77,9 +77,9 @@ def overturning_map(
     ]
     sheet = make_single_panel(ax, "overturning_map", (6.0, 4.3))
     axes = sheet.axes
-    known = overturns(data).transpose(*count.dims).notnull()
+    decided = overturns(data).transpose(*count.dims).notnull()
     axes.pcolormesh(
-        across, up, count.fillna(-1.0).where(known), cmap=ListedColormap(colours), vmin=-1.5,
+        across, up, count.fillna(-1.0).where(decided), cmap=ListedColormap(colours), vmin=-1.5,
         vmax=impact_count + 0.5, shading="nearest",
     )  # fmt: skip
     middle = 0.5 * (data["amplitude_below"] + data["amplitude_above"])
@@ -93,8 +93,8 @@ def overturning_map(
         ylabel=r"peak acceleration over that of uplift [-]" if relative else variable_label(up),
     )
     words = ["stands", *(_impact_label(k, impact_count) for k in range(impact_count + 1))]
-    patches = [Patch(color=one, label=text) for one, text in zip(colours, words, strict=True)]
-    if not known.all():
+    patches = [Patch(color=colour, label=text) for colour, text in zip(colours, words, strict=True)]
+    if not decided.all():
         words.append("no verdict")
         patches.append(Patch(facecolor="none", edgecolor="0.6", label=words[-1]))
     sheet.add_legend(patches, words, columns=2)
@@ -184,8 +184,8 @@ def _draw_by_slenderness(ax: AxesLike, function: str, values: xr.DataArray, **st
     for place, axes in enumerate(sheet.panels):
         motions = unique_labels(map(str, values["motion"].to_numpy()))
         for number, colour in enumerate(colour_steps(values["motion"])):
-            one, label = values.isel(slenderness=place, motion=number), motions[number]
-            axes.plot(one["rocking_period"], one, color=colour, lw=1.0, label=label)
+            curve, label = values.isel(slenderness=place, motion=number), motions[number]
+            axes.plot(curve["rocking_period"], curve, color=colour, lw=1.0, label=label)
         axes.set(xscale="log", xlabel=r"$2\pi/p$ [s]", title=names[place], **style)
         grid(axes)
         label_log_ticks(axes)

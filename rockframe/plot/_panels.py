@@ -57,7 +57,7 @@ def _broken_lines(words: str, width: int) -> list[str]:
     """Break lines after semicolons and sentences, and otherwise between words."""
     if len(words) <= width:
         return [words]
-    words = _NUMBER_WITH_UNIT.sub(lambda one: one[0].replace(" ", NO_BREAK), words)
+    words = _NUMBER_WITH_UNIT.sub(lambda match: match[0].replace(" ", NO_BREAK), words)
     for mark in ("; ", ". "):
         for place in range(width - 1, width // 3, -1):
             if words.startswith(mark, place):
@@ -179,12 +179,12 @@ def chosen_panels(panels: object, known: Iterable[str], function: str) -> tuple[
     if panels is None:
         return tuple(names)
     chosen: list[Any] = list(panels) if isinstance(panels, tuple | list) else [panels]
-    wrong = [one for one in chosen if not isinstance(one, str) or one not in names]
+    wrong = [panel for panel in chosen if not isinstance(panel, str) or panel not in names]
     if wrong or not chosen or len(set(chosen)) < len(chosen):
-        found = wrong[0] if wrong else panels
+        invalid = wrong[0] if wrong else panels
         msg = (
             f"rf.plot.{function}: panels are one or more of {', '.join(map(repr, names))}, each "
-            f"once, got {short_repr(found)}{did_you_mean(found, names)}"
+            f"once, got {short_repr(invalid)}{did_you_mean(invalid, names)}"
         )
         raise ComponentError(msg)
     return tuple(chosen)
@@ -201,9 +201,9 @@ def _checked_axes(ax: Any, function: str, names: Sequence[str], *, choice: bool)
     is_sequence = isinstance(ax, Sequence | np.ndarray) and not isinstance(ax, str | Axes)
     panels = list(np.ravel(np.array(ax, dtype=object))) if is_sequence else [ax]
     expected = "one Axes" if len(names) == 1 else f"{len(names)} Axes, for {', '.join(names)}"
-    for one in panels:
-        if not isinstance(one, Axes):
-            msg = f"rf.plot.{function}: ax must be {expected}, got {short_repr(one)}"
+    for panel in panels:
+        if not isinstance(panel, Axes):
+            msg = f"rf.plot.{function}: ax must be {expected}, got {short_repr(panel)}"
             raise ComponentError(msg)
     if len(panels) != len(names):
         msg = f"rf.plot.{function}: ax must be {expected}, got {len(panels)} Axes"

@@ -191,7 +191,7 @@ def player(
         else checked_text(title, owner="rf.plot.player", name="title")
     )
     data = {
-        "times": [round(float(one), 6) for one in shown_run.time[samples]],
+        "times": [round(float(time), 6) for time in shown_run.time[samples]],
         "layers": layers,
         "traces": traces,
         "strips": [
@@ -218,15 +218,15 @@ class _PackedNumbers:
     def add(self, values: np.ndarray, low: float, high: float) -> int:
         """Add columns, with NaN for missing values, and give the place of the first."""
         step = (high - low) / _STEP_COUNT or 1.0
-        whole = np.where(np.isnan(values), _MISSING, np.rint((values - low) / step))
+        integers = np.where(np.isnan(values), _MISSING, np.rint((values - low) / step))
         before = sum(column.size for column in self._columns)
-        self._columns.append(whole.astype(np.int64).T.ravel())
+        self._columns.append(integers.astype(np.int64).T.ravel())
         return before
 
     def packed(self) -> str:
         """Return the differences of neighbours as compressed text."""
-        whole = np.concatenate(self._columns)
-        steps = np.diff(whole, prepend=0).astype("<i2")  # modulo 2**16, as the page adds them up
+        integers = np.concatenate(self._columns)
+        steps = np.diff(integers, prepend=0).astype("<i2")  # modulo 2**16, as the page adds them up
         # first all low bytes, then all high bytes: these are mostly equal, and compress well
         halves = steps.view(np.uint8).reshape(-1, 2).T.tobytes()
         return base64.b64encode(zlib.compress(halves, 9)).decode()
@@ -235,14 +235,14 @@ class _PackedNumbers:
 def _layers(history: SceneHistory, shown_at: np.ndarray, store: _PackedNumbers) -> dict[str, Any]:
     """Return everything that is drawn, at all instants."""
     placements = [history.placement_at(int(place)) for place in shown_at]
-    found = [history.builder.layout_at(at) for at in placements]
-    layers = [*_part_layers(history, found), *_contact_layers(found)]
+    layouts = [history.builder.layout_at(at) for at in placements]
+    layers = [*_part_layers(history, layouts), *_contact_layers(layouts)]
     layers += [
         _Layer(name, "point", GREEN, 1.0,
                np.array([history.builder.points_at(at, np.array([place])) for at in placements]))
         for name, place in history.points.items()
     ]  # fmt: skip
-    corners = np.concatenate([one.points for one in layers if one.shape != "ground"], axis=1)
+    corners = np.concatenate([layer.points for layer in layers if layer.shape != "ground"], axis=1)
     low, high = np.nanmin(corners, axis=(0, 1)), np.nanmax(corners, axis=(0, 1))
     reach = max(history.builder.reach, 1.08 * float(max(-low[0], high[0])))
     depth, air = 0.3 * history.builder.reach, 0.06 * float(high[1] - low[1])
@@ -252,55 +252,63 @@ def _layers(history: SceneHistory, shown_at: np.ndarray, store: _PackedNumbers) 
     for name, shape, colour, fill, points in layers:
         if shape == "ground":  # from one edge of the drawing to the other
             points[:, 0, 0], points[:, -1, 0] = left, left + width
-        columns = (points - (left, bottom)).reshape(len(found), -1)
+        columns = (points - (left, bottom)).reshape(len(layouts), -1)
         listed.append({
             "name": name, "shape": shape, "colour": colour, "fill": fill,
             "points": points.shape[1], "first": store.add(columns, 0.0, max(width, height)),
         })  # fmt: skip
-    pads = np.array([one.pads_in_contact for one in found], np.float64)
-    pressed = store.add(pads, 0.0, 1.0) if found[0].pads else None
+    pads = np.array([layout.pads_in_contact for layout in layouts], np.float64)
+    pressed = store.add(pads, 0.0, 1.0) if layouts[0].pads else None
     return {"left": left, "bottom": bottom, "width": width, "height": height, "pressed": pressed,
             "list": listed}  # fmt: skip
 
 
-def _part_layers(history: SceneHistory, found: Sequence[Layout]) -> Iterator[_Layer]:
+def _part_layers(history: SceneHistory, layouts: Sequence[Layout]) -> Iterator[_Layer]:
     """Return the parts of a scene, from the back to the front."""
-    upright, first = history.builder.layout_at(history.upright), found[0]
+    upright, first = history.builder.layout_at(history.upright), layouts[0]
 
     def still(points: Array) -> Array:
-        return np.repeat(points[None], len(found), axis=0)
+        return np.repeat(points[None], len(layouts), axis=0)
 
     def each(name: str, shape: str, colour: str, fill: float) -> Iterator[_Layer]:
         for k in range(len(getattr(first, name))):
-            points = np.array([getattr(one, name)[k] for one in found])
+            points = np.array([getattr(layout, name)[k] for layout in layouts])
             yield _Layer(name, shape, colour, fill, points)
 
     if first.soil is None:
-        yield _Layer("ground", "ground", "soft", 0.35, np.array([one.ground for one in found]))
+        yield _Layer(
+            "ground", "ground", "soft", 0.35, np.array([layout.ground for layout in layouts])
+        )
     else:
         yield _Layer(
-            "soil", "ground", SOIL_COLOUR, 0.35, np.array([_surface_corners(one) for one in found])
+            "soil",
+            "ground",
+            SOIL_COLOUR,
+            0.35,
+            np.array([_surface_corners(layout) for layout in layouts]),
         )
     for outline in upright.bodies:
         yield _Layer("at rest", "dashes", "soft", 0.0, still(outline))
     if history.geometry.wall is not None:
         yield _Layer("wall", "outline", "soft", 0.35, still(history.geometry.wall))
     if first.cap is not None:
-        yield _Layer("cap", "outline", ORANGE, 0.3, np.array([one.cap for one in found]))
+        yield _Layer("cap", "outline", ORANGE, 0.3, np.array([layout.cap for layout in layouts]))
     yield from each("lower_bodies", "outline", ORANGE, 0.25)
     yield from each("pads", "outline", "soft", 0.7)
     yield from each("frame_parts", "outline", BLUE, 0.25)
-    block = np.array([one.block for one in found])
+    block = np.array([layout.block for layout in layouts])
     yield _Layer("block", "outline", BLUE, 0.08 if first.members else 0.25, block)
     yield from each("members", "outline", BLUE, 0.3)
     yield from each("restrainers", "line", VERMILLION, 0.0)
-    yield _Layer("centre of mass", "cross", "ink", 1.0, np.array([one.centres for one in found]))
+    yield _Layer(
+        "centre of mass", "cross", "ink", 1.0, np.array([layout.centres for layout in layouts])
+    )
 
 
-def _contact_layers(found: Sequence[Layout]) -> Iterator[_Layer]:
+def _contact_layers(layouts: Sequence[Layout]) -> Iterator[_Layer]:
     """Return the contacts: both ends of each line; a point is a line of zero length."""
-    for k in range(len(found[0].contacts)):
-        points = np.array([one.contacts[k][[0, -1]] for one in found])
+    for k in range(len(layouts[0].contacts)):
+        points = np.array([layout.contacts[k][[0, -1]] for layout in layouts])
         yield _Layer("contact", "contact", CONTACT_COLOUR, 0.0, points)
 
 
@@ -309,20 +317,20 @@ def _largest_slips(run: xr.Dataset) -> list[tuple[str, xr.DataArray]]:
     slips = {SLIP: run[SLIP]} if SLIP in run else {}
     if BODY_SLIP in run:
         slips = {
-            f"slip of body {int(one.body)}": one for one in run[BODY_SLIP].transpose("body", ...)
+            f"slip of body {int(slip.body)}": slip for slip in run[BODY_SLIP].transpose("body", ...)
         }
     elif CAP_SLIP in run:
         slips |= {"slip of the cap": run[CAP_SLIP]}
-    largest = {name: float(np.abs(one).max()) for name, one in slips.items()}
-    shown = sorted(
+    largest = {name: float(np.abs(slip).max()) for name, slip in slips.items()}
+    names = sorted(
         (name for name in largest if largest[name] >= MIN_REPORTED_SLIP), key=largest.__getitem__
     )
-    return [(name, one) for name, one in slips.items() if name in shown[-_MAX_SLIP_TRACES:]]
+    return [(name, slip) for name, slip in slips.items() if name in names[-_MAX_SLIP_TRACES:]]
 
 
-def _surface_corners(found: Layout) -> Array:
+def _surface_corners(layout: Layout) -> Array:
     """Return the corners of the surface of the soil, which is straight between them."""
-    surface = cast("Array", found.soil)
+    surface = cast("Array", layout.soil)
     bend = int(np.argmax(np.abs(np.diff(surface[:, 1], 2)[2:-2]))) + 3
     return surface[[0, 1, 2, bend, -3, -2, -1]]
 
@@ -361,4 +369,4 @@ def _fill_template(sentence: str, motion: str, data: dict[str, Any]) -> str:
     page = _TEMPLATE.read_text(encoding="utf-8")
     filled = {"GENERATOR": generator_tag(_TITLE, __version__), "TITLE": escape(sentence or "A run"),
               "MOTION": escape(motion), "DATA": written}  # fmt: skip
-    return re.sub(r"@(\w+)@", lambda found: filled[found[1]], page)
+    return re.sub(r"@(\w+)@", lambda match: filled[match[1]], page)

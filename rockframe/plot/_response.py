@@ -291,13 +291,13 @@ def _read_panels(panels: object, runs: list[Run]) -> tuple[str, ...]:
     chosen: tuple[object, ...] = tuple(panels) if isinstance(panels, tuple | list) else (panels,)
     histories = list(dict.fromkeys(name for run in runs for name in history_names(run.dataset)))
     known_names = [*_HEIGHTS, *histories]
-    unknown = [one for one in chosen if not isinstance(one, str) or one not in known_names]
+    unknown = [panel for panel in chosen if not isinstance(panel, str) or panel not in known_names]
     if not chosen or unknown:
-        known = ", ".join(repr(name) for name in _HEIGHTS)
+        choices = ", ".join(repr(name) for name in _HEIGHTS)
         wrong = unknown[0] if unknown else panels
         proposal = did_you_mean(wrong, [*_HEIGHTS, *histories]) or "."
         msg = (
-            f"rf.plot.response: panels are some of {known}, and histories of the runs, got "
+            f"rf.plot.response: panels are some of {choices}, and histories of the runs, got "
             f"{short_repr(wrong)}{proposal} They hold {', '.join(map(repr, histories))}"
         )
         raise ComponentError(msg)
@@ -331,8 +331,8 @@ def _contact_states(run: xr.Dataset, *, single: bool) -> dict[str, xr.DataArray]
         states = run[BODY_CONTACT_STATE].transpose("body", "time")
         # those that are longest without full contact, of a high stack
         open_count = (states != ContactState.FULL).sum("time").to_numpy()
-        shown = np.sort(np.argsort(-open_count, kind="stable")[:_MAX_STRIPS])
-        return {f"body {int(one['body'])}": one for one in states.isel(body=shown)}
+        bodies = np.sort(np.argsort(-open_count, kind="stable")[:_MAX_STRIPS])
+        return {f"body {int(state['body'])}": state for state in states.isel(body=bodies)}
     names = [name for name in CONTACT_NAMES if name in run]
     if _ROTATION_ON_CAP not in run:  # one body: the soil's contact is the only one
         return {"": run[names[0]]}
@@ -344,7 +344,7 @@ def _draw_ground(axes: Axes, runs: list[Run], unit: DisplayUnit) -> None:
     ground_motions = [
         run.dataset[[name for name in (across, upwards) if name in run.dataset]] for run in runs
     ]
-    all_equal = all(one.equals(ground_motions[0]) for one in ground_motions)
+    all_equal = all(motion.equals(ground_motions[0]) for motion in ground_motions)
     for run in runs[:1] if all_equal else runs:
         for name, style, width in ((upwards, "-" if all_equal else ":", 0.6), (across, "-", 0.8)):
             if name not in run.dataset:

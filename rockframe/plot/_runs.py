@@ -48,10 +48,10 @@ def read_runs(value: object, function: str, window: Window) -> list[Run]:
     labelled = _labelled_runs(value)
     labels: list[Any] = [None] if labelled is None else unique_labels(labelled)
     values: list[Any] = [value] if labelled is None else [*labelled.values()]
-    runs = [checked_run(one, function) for one in values]
+    runs = [checked_run(run, function) for run in values]
     return [
-        Run(_within_window(one, limits, function), label, line_colour(number), line_style(number))
-        for number, (label, one) in enumerate(zip(labels, runs, strict=True))
+        Run(_within_window(run, limits, function), label, line_colour(number), line_style(number))
+        for number, (label, run) in enumerate(zip(labels, runs, strict=True))
     ]
 
 
@@ -68,8 +68,8 @@ def read_window(window: object, function: str, name: str = "window") -> tuple[fl
         )
         raise ComponentError(msg)
     start, end = (
-        none if one is None else to_si(one, TIME.like("('2 s', '8 s')"), owner=owner, name=name)
-        for one, none in zip(ends, (-np.inf, np.inf), strict=True)
+        none if time is None else to_si(time, TIME.like("('2 s', '8 s')"), owner=owner, name=name)
+        for time, none in zip(ends, (-np.inf, np.inf), strict=True)
     )  # fmt: skip
     if start >= end:
         msg = f"{owner}: {name} must end after it starts, got {short_repr(window)}"
@@ -104,12 +104,12 @@ def verdict_of_case(run: xr.Dataset, units: DisplayUnits) -> str:
 
 def _case_label(run: xr.Dataset) -> str:
     """Name the case of a sweep by its coordinates."""
-    axes = [str(one["name"]) for one in json.loads(str(run.attrs["axes_json"]))]
+    axes = [str(axis["name"]) for axis in json.loads(str(run.attrs["axes_json"]))]
     names = [name for name in ("motion", *axes) if name in run.coords and not run[name].dims]
     labels = [(name.replace("_", " "), run[name].item(), run[name].attrs) for name in names]
     words = [
-        f"{name} {f'{one:.6g}' if isinstance(one, float) else one}{unit_suffix_of(attrs)}"
-        for name, one, attrs in labels
+        f"{name} {f'{value:.6g}' if isinstance(value, float) else value}{unit_suffix_of(attrs)}"
+        for name, value, attrs in labels
     ]
     return ", ".join(words) or "case of a sweep"
 
@@ -117,7 +117,7 @@ def _case_label(run: xr.Dataset) -> str:
 def _labelled_runs(value: object) -> dict[str, Any] | None:
     """Return several runs by their labels; None for a single run."""
     if isinstance(value, Mapping) and not isinstance(value, xr.Dataset):
-        labels = {str(key): one for key, one in value.items()}
+        labels = {str(key): run for key, run in value.items()}
         return labels if labels and _are_datasets(list(labels.values())) else None
     if not isinstance(value, list | tuple) or not value:
         return None
@@ -126,14 +126,17 @@ def _labelled_runs(value: object) -> dict[str, Any] | None:
         return None
     cases = [_case_label(run) if "axes_json" in run.attrs else "" for run in runs]
     attributes = ("motion", "model", "accuracy")
-    for names in [cases, *([str(run.attrs.get(one, "")) for run in runs] for one in attributes)]:
+    for names in [
+        cases,
+        *([str(run.attrs.get(attribute, "")) for run in runs] for attribute in attributes),
+    ]:
         if len(set(names)) == len(runs):
             return dict(zip(names, runs, strict=True))
     return {f"run {number}": run for number, run in enumerate(runs, start=1)}
 
 
 def _are_datasets(values: list[Any]) -> bool:
-    return all(isinstance(one, xr.Dataset) for one in values)
+    return all(isinstance(value, xr.Dataset) for value in values)
 
 
 def _within_window(run: xr.Dataset, limits: tuple[float, float], function: str) -> xr.Dataset:

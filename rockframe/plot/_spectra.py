@@ -91,14 +91,14 @@ def spectra(
     axis_units = figure_units(units, "spectra")
     unit = axis_units.axis_unit(ACCELERATION, acceleration=acceleration)
     amplitude = axis_units.axis_unit(VELOCITY)
-    found = [
+    results = [
         (
-            one,
-            velocity_and_displacement(one.motion, component=component),
-            response_spectrum(one.motion, periods, damping_ratios, component=component),
-            fourier_spectrum(one.motion, resolution=_RESOLUTION, component=component),
+            curve,
+            velocity_and_displacement(curve.motion, component=component),
+            response_spectrum(curve.motion, periods, damping_ratios, component=component),
+            fourier_spectrum(curve.motion, resolution=_RESOLUTION, component=component),
         )
-        for one in data
+        for curve in data
     ]
 
     def make(figure: Any) -> Any:
@@ -107,18 +107,18 @@ def spectra(
         return [drawn[name] for name in _PANELS]
 
     sheet = make_sheet(ax, "spectra", _PANELS, (7.2, 5.4), make)
-    for one, history, response, fourier in found:
+    for curve, history, response, fourier in results:
         name = f"{_VARIABLE_PREFIX[str(component)]}ground_acceleration"
-        colour = text_colour() if one.label is None else one.colour
+        colour = text_colour() if curve.label is None else curve.colour
         part = history.sel(time=slice(*limits))
         values = unit.of(part[name])
-        sheet.axes.plot(part["time"], values, color=colour, linewidth=0.8, label=one.label)
+        sheet.axes.plot(part["time"], values, color=colour, linewidth=0.8, label=curve.label)
         zero_line(sheet.axes)
-        _draw_response_spectra(sheet.panels[1], response, unit, one)
-        rest = fourier.isel(frequency=slice(1, None))
-        values = amplitude.of(rest["fourier_amplitude"])
-        sheet.panels[2].semilogx(rest["frequency"], values, color=colour, linewidth=0.7)
-    _label_axes(sheet.panels, found, unit, amplitude)
+        _draw_response_spectra(sheet.panels[1], response, unit, curve)
+        positive = fourier.isel(frequency=slice(1, None))
+        values = amplitude.of(positive["fourier_amplitude"])
+        sheet.panels[2].semilogx(positive["frequency"], values, color=colour, linewidth=0.7)
+    _label_axes(sheet.panels, results, unit, amplitude)
     if len(data) > 1:
         sheet.add_legend(*sheet.panels[1].get_legend_handles_labels(), fontsize="small")
     sheet.set_title(motions_title(data), title)
@@ -126,37 +126,37 @@ def spectra(
 
 
 def _draw_response_spectra(
-    axes: Axes, dataset: xr.Dataset, unit: DisplayUnit, one: LabelledMotion
+    axes: Axes, dataset: xr.Dataset, unit: DisplayUnit, curve: LabelledMotion
 ) -> None:
     drawn = dataset.isel(period=np.flatnonzero(dataset["period"].to_numpy() > 0.0))
     ratios = dataset["damping_ratio"].to_numpy().tolist()
     for place, ratio in enumerate(ratios):
         damping = f"{100.0 * ratio:g} %"
         label = damping
-        if one.label is not None:
-            label = one.label if len(ratios) == 1 else f"{one.label}, {damping}"
+        if curve.label is not None:
+            label = curve.label if len(ratios) == 1 else f"{curve.label}, {damping}"
         values = unit.of(drawn["pseudo_spectral_acceleration"].isel(damping_ratio=place))
-        colour = line_colour(place) if one.label is None else one.colour
+        colour = line_colour(place) if curve.label is None else curve.colour
         axes.semilogx(
             drawn["period"], values, color=colour, ls=line_style(place), lw=1.2, label=label
         )
 
 
 def _label_axes(
-    panels: Panels, found: list[Any], unit: DisplayUnit, amplitude: DisplayUnit
+    panels: Panels, results: list[Any], unit: DisplayUnit, amplitude: DisplayUnit
 ) -> None:
     history, response, fourier = panels
-    several = len(found) > 1
-    times = [each[1]["time"].to_numpy() for each in found]
-    shown = [line.get_xdata() for line in history.get_lines() if len(line.get_xdata()) > 2]
-    ends = shown or times
+    several = len(results) > 1
+    times = [result[1]["time"].to_numpy() for result in results]
+    drawn_times = [line.get_xdata() for line in history.get_lines() if len(line.get_xdata()) > 2]
+    ends = drawn_times or times
     history.set_xlim(min(time[0] for time in ends), max(time[-1] for time in ends))
     history.set(xlabel="time [s]", ylabel=axis_label("acceleration\n", unit.words))
     response.set(xlabel="period [s]", ylabel=axis_label("pseudo-spectral acceleration", unit.words))
     response.set_ylim(bottom=0.0)
     if not several:
         add_legend(response, title="damping", title_fontsize="small")
-    highest = max(float(amplitude.of(each[3]["fourier_amplitude"]).max()) for each in found)
+    highest = max(float(amplitude.of(result[3]["fourier_amplitude"]).max()) for result in results)
     if highest > 0.0:
         fourier.set_yscale("log")
         fourier.set_ylim(1e-4 * highest, 2.0 * highest)
@@ -245,25 +245,25 @@ def suite(
     shown_average = checked_choice(Average, average, owner=_SUITE_OWNER, name="average")
     comparison = read_window(compared, "suite", "compared")
     unit = figure_units(units, "suite").axis_unit(ACCELERATION, "g", acceleration=acceleration)
-    labelled = {one.label or motions_title(data): one.motion for one in data}
-    found = response_spectrum(labelled, periods, damping_ratio, component=component)
-    found = found.isel(period=np.flatnonzero(found["period"].to_numpy() > 0.0))
+    labelled = {curve.label or motions_title(data): curve.motion for curve in data}
+    dataset = response_spectrum(labelled, periods, damping_ratio, component=component)
+    dataset = dataset.isel(period=np.flatnonzero(dataset["period"].to_numpy() > 0.0))
     values = unit.of(
-        found["pseudo_spectral_acceleration"].squeeze("damping_ratio").transpose("motion", ...)
+        dataset["pseudo_spectral_acceleration"].squeeze("damping_ratio").transpose("motion", ...)
     )
-    period = found["period"].to_numpy()
+    period = dataset["period"].to_numpy()
     sheet = make_single_panel(ax, "suite", (6.0, 4.3))
     label_each = (
         len(data) <= _MAX_NAMED
         if named is None
         else checked_bool(named, owner=_SUITE_OWNER, name="named")
     )
-    for place, (label, one) in enumerate(zip(labelled, data, strict=True)):
+    for place, (label, curve) in enumerate(zip(labelled, data, strict=True)):
         words: Any = label if label_each else ("motions" if place == 0 else None)
         sheet.axes.plot(
             period, values[place], label=words, linewidth=0.9 if label_each else 0.6,
-            color=one.colour if label_each else GREY, linestyle=one.style if label_each else "-",
-            alpha=0.8 if label_each else 0.5,
+            color=curve.colour if label_each else GREY,
+            linestyle=curve.style if label_each else "-", alpha=0.8 if label_each else 0.5,
         )  # fmt: skip
     if len(data) > 1 and shown_average is Average.MEDIAN:
         _draw_spread(sheet.axes, period, values)
@@ -271,10 +271,10 @@ def suite(
         sheet.axes.plot(period, values.mean(axis=0), color=BLUE, linewidth=1.8, label="mean")
     if target is not None:
         low, high = target.limits
-        known = period[(period >= low) & (period <= high)]
-        target_values = target.at((known, "s"))
+        target_period = period[(period >= low) & (period <= high)]
+        target_values = target.at((target_period, "s"))
         sheet.axes.plot(
-            known, unit.of(target_values), color=VERMILLION, linewidth=1.8, label="target"
+            target_period, unit.of(target_values), color=VERMILLION, linewidth=1.8, label="target"
         )
     sheet.axes.set(
         xscale="log", yscale="log", xlabel="period [s]",
@@ -288,7 +288,7 @@ def suite(
     grid(sheet.axes)
     add_legend(sheet.axes)
     count = len(data)
-    damping = float(found["damping_ratio"].to_numpy().ravel()[0])
+    damping = float(dataset["damping_ratio"].to_numpy().ravel()[0])
     usual = f"{count} motion{'s' if count > 1 else ''}; damping {100.0 * damping:g} %"
     sheet.set_title(usual, title)
     return sheet.axes
@@ -360,8 +360,8 @@ def selection(
     spectra, misfits = sheet.panels
     for place in range(count):
         words = "motions" if place == 0 else None
-        one = drawn["scaled_spectral_acceleration"].isel(motion=place)
-        spectra.plot(period, one, color=GREY, alpha=0.6, linewidth=0.6, label=words)
+        spectrum = drawn["scaled_spectral_acceleration"].isel(motion=place)
+        spectra.plot(period, spectrum, color=GREY, alpha=0.6, linewidth=0.6, label=words)
     for name, colour, words in (
         ("set_median", BLUE, "median"),
         ("target_spectral", VERMILLION, "target"),

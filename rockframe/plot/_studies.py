@@ -156,8 +156,8 @@ def sweep(
     if len(dims) == 1 or min(values.sizes.values()) <= _MAX_LINES:
         # lines along the longest axis that has numbers
         along = max(dims, key=lambda dim: (_is_numeric_axis(data, dim), values.sizes[dim]))
-        others = [dim for dim in dims if dim != along]
-        _draw_lines(sheet.axes, data, values, overturned, along, others)
+        other_dims = [dim for dim in dims if dim != along]
+        _draw_lines(sheet.axes, data, values, overturned, along, other_dims)
     else:
         _draw_map(sheet.axes, data, values.transpose(*dims), overturned, dims)
     sentence = shown_in.convert_text(cases_verdict(runs))
@@ -252,11 +252,11 @@ def _drop_single_axes(dataset: xr.Dataset, variable: object) -> xr.Dataset:
 
 def _checked_values(dataset: xr.Dataset, variable: object) -> xr.DataArray:
     if not isinstance(variable, str) or variable not in dataset.data_vars:
-        known = ", ".join(
-            repr(str(name)) for name, one in dataset.data_vars.items() if 0 < one.ndim < 3
+        variables = ", ".join(
+            repr(str(name)) for name, array in dataset.data_vars.items() if 0 < array.ndim < 3
         )
         near = did_you_mean(variable, map(str, dataset.data_vars))
-        msg = f"rf.plot.sweep: the runs have no {short_repr(variable)}{near}; they have {known}"
+        msg = f"rf.plot.sweep: the runs have no {short_repr(variable)}{near}; they have {variables}"
         raise SchemaError(msg)
     values = dataset[variable]
     if not 1 <= values.ndim <= _MAX_AXES:
@@ -293,12 +293,12 @@ def _draw_lines(
     places, words = _axis_values(dataset, x_dim)
     line_dim, crosses = other_dims[0] if other_dims else "", list[tuple[Any, Any]]()
     for number in range(values.sizes.get(line_dim, 1)):
-        one = {line_dim: number} if other_dims else {}
-        line = values.isel(one).to_numpy().astype(np.float64)
+        selected = {line_dim: number} if other_dims else {}
+        line = values.isel(selected).to_numpy().astype(np.float64)
         label = None
         if other_dims:
-            known = line_dim in dataset.coords
-            text = value_label(dataset[line_dim][number]) if known else str(number)
+            labelled = line_dim in dataset.coords
+            text = value_label(dataset[line_dim][number]) if labelled else str(number)
             named = line_dim == "motion" or text.startswith(line_dim)
             label = text if named else f"{line_dim.replace('_', ' ')} {text}"
         axes.plot(
@@ -307,12 +307,14 @@ def _draw_lines(
             label=label,
         )  # fmt: skip
         crossed = (
-            np.zeros(line.shape, bool) if overturned is None else overturned.isel(one).to_numpy()
+            np.zeros(line.shape, bool)
+            if overturned is None
+            else overturned.isel(selected).to_numpy()
         )
         crosses.append((places[crossed], line[crossed]))
     if any(line_dim.size for line_dim, _ in crosses):
-        both = np.concatenate(crosses, axis=1)
-        axes.plot(*both, "x", color=text_colour(), markersize=6.0, label="overturned")
+        points = np.concatenate(crosses, axis=1)
+        axes.plot(*points, "x", color=text_colour(), markersize=6.0, label="overturned")
     if not _is_numeric_axis(dataset, x_dim) and x_dim in dataset.coords:
         names = unique_labels(map(str, dataset[x_dim].to_numpy()), _MAX_NAME_LENGTH)
         axes.set_xticks(places, names, rotation=30, ha="right", fontsize="small")

@@ -35,32 +35,32 @@ def bits() -> int:
     return ctx.prec
 
 
-def magnitude(one: Ball) -> Ball:
+def magnitude(value: Ball) -> Ball:
     """Return the largest absolute value in a ball, rounded up, as an exact ball."""
-    return arb(one.abs_upper())
+    return arb(value.abs_upper())
 
 
-def dot(one: Sequence[Ball], other: Sequence[Ball]) -> Ball:
+def dot(left: Sequence[Ball], right: Sequence[Ball]) -> Ball:
     """Return the sum of products of two rows, up to the end of the shorter one."""
-    return sum(map(mul, one, other), ZERO)
+    return sum(map(mul, left, right), ZERO)
 
 
-def cauchy_product(one: Row, other: Row, order: int) -> Ball:
+def cauchy_product(left: Row, right: Row, order: int) -> Ball:
     """Return the coefficient of some order in the product of two power series."""
-    return sum(map(mul, one, other[order::-1]), ZERO)
+    return sum(map(mul, left, right[order::-1]), ZERO)
 
 
 def polynomial_value(coefficients: Row, at: Ball) -> Ball:
     """Evaluate a polynomial, lowest power first."""
     result: Ball = 0
-    for each in reversed(coefficients):
-        result = result * at + each
+    for coefficient in reversed(coefficients):
+        result = result * at + coefficient
     return result
 
 
 def derivative_of(coefficients: Row) -> Row:
     """Return the derivative of a polynomial."""
-    return [each * power for power, each in enumerate(coefficients)][1:]
+    return [coefficient * power for power, coefficient in enumerate(coefficients)][1:]
 
 
 def taylor_shift(coefficients: Row, shift: Ball) -> Row:
@@ -69,20 +69,20 @@ def taylor_shift(coefficients: Row, shift: Ball) -> Row:
         return [coefficients[0] + coefficients[1] * shift, coefficients[1]]
     row = list(coefficients)
     for start in range(len(row) - 1):
-        for each in range(len(row) - 2, start - 1, -1):
-            row[each] = row[each] + shift * row[each + 1]
+        for power in range(len(row) - 2, start - 1, -1):
+            row[power] = row[power] + shift * row[power + 1]
     return row
 
 
 def hull(balls: Row) -> Ball:
     """Return a ball that contains others."""
     result = balls[0]
-    for each in balls[1:]:
-        result = result.union(each)
+    for part in balls[1:]:
+        result = result.union(part)
     return result
 
 
-def matrix_product(one: Matrix, other: Matrix) -> Matrix:
+def matrix_product(left: Matrix, right: Matrix) -> Matrix:
     """Multiply two matrices."""
-    columns = list(zip(*other, strict=True))
-    return [[sum(map(mul, row, column), ZERO) for column in columns] for row in one]
+    columns = list(zip(*right, strict=True))
+    return [[sum(map(mul, row, column), ZERO) for column in columns] for row in left]

@@ -97,23 +97,23 @@ def follow_bounces(
         longest = left if lift is None else ZERO.max(lift[0].lower())
         window = longest
         for _ in range(_MAX_GUESSES):
-            found = bounds.after_window(ground.at(UNIT * window), window)
-            if found is not None:
+            bounds_or_uplift = bounds.after_window(ground.at(UNIT * window), window)
+            if bounds_or_uplift is not None:
                 break
             window = (window / 2).mid()
         else:
             return None
-        if isinstance(found, _Bounds):
-            bounds = found
+        if isinstance(bounds_or_uplift, _Bounds):
+            bounds = bounds_or_uplift
         else:
-            return instant.later(problem, found)
-        whole = window is longest
-        if whole and lift is None:
+            return instant.later(problem, bounds_or_uplift)
+        is_longest = window is longest
+        if is_longest and lift is None:
             bounds = bounds.after_jump(instant.interval)
             instant = Instant(instant.interval + 1, ZERO)
         else:
             instant = instant.later(problem, window)
-        if whole and lift is not None:
+        if is_longest and lift is not None:
             delay = lift[0].upper() - lift[0].lower()
             return _uplift_state(problem, instant, lift[1], ball(delay), bounds)
     return None
@@ -187,9 +187,9 @@ class _Bounds:
         least = ball(min((restoring.least.lower() for restoring in both_sides), key=float))
         if least > 0:
             lost = (1 - e) * least / 2
-            rest = magnitude(left / lost)
-            if rest < window:
-                return rest
+            resting_time = magnitude(left / lost)
+            if resting_time < window:
+                return resting_time
             left = magnitude(left - lost * window)
             low = magnitude((left / e) ** 2 / (2 * least))
             reach = low if low < reach else reach

@@ -58,9 +58,9 @@ class SetOfStates(NamedTuple):
     @classmethod
     def from_box(cls, state: Row, uncertain: Sequence[Ball]) -> "SetOfStates":
         """Return the box of a state as a set that does not depend on the uncertain inputs."""
-        centre = [each.mid() for each in state]
+        centre = [component.mid() for component in state]
         by_inputs = [[ZERO] * len(uncertain) for _ in centre]
-        remainder = [each - middle for each, middle in zip(state, centre, strict=True)]
+        remainder = [component - middle for component, middle in zip(state, centre, strict=True)]
         return cls(centre, by_inputs, uncertain, identity(len(state)), remainder)
 
     def deviations(self) -> Row:
@@ -73,12 +73,13 @@ class SetOfStates(NamedTuple):
     def influences(self) -> list[float]:
         """Return the largest change of the first component by each uncertain input."""
         pairs = zip(self.by_inputs[0], self.uncertain, strict=True)
-        return [float((row * one).abs_upper()) for row, one in pairs]
+        return [float((row * deviation).abs_upper()) for row, deviation in pairs]
 
     def box(self) -> Row:
         """Enclose each component of the states."""
         return [
-            one + deviations for one, deviations in zip(self.centre, self.deviations(), strict=True)
+            middle + deviations
+            for middle, deviations in zip(self.centre, self.deviations(), strict=True)
         ]
 
     def image(self, centre: Row, matrix: Matrix, by_inputs: Matrix) -> "SetOfStates":
@@ -87,15 +88,15 @@ class SetOfStates(NamedTuple):
         `centre` encloses the image of the centre, `matrix` and `by_inputs` the derivatives over the
         whole set with respect to the state and to the uncertain inputs.
         """
-        start = [each.mid() for each in centre]
-        remainders = [each - middle for each, middle in zip(centre, start, strict=True)]
+        start = [component.mid() for component in centre]
+        remainders = [component - middle for component, middle in zip(centre, start, strict=True)]
         middles = self.by_inputs
         if self.uncertain:
             by_inputs = [
-                [one + other for one, other in zip(row, more, strict=True)]
+                [derivative + direct for derivative, direct in zip(row, more, strict=True)]
                 for row, more in zip(matrix_product(matrix, self.by_inputs), by_inputs, strict=True)
             ]
-            middles = [[each.mid() for each in row] for row in by_inputs]
+            middles = [[derivative.mid() for derivative in row] for row in by_inputs]
             for i, (row, middle) in enumerate(zip(by_inputs, middles, strict=True)):
                 remainders[i] += dot(
                     [a - b for a, b in zip(row, middle, strict=True)], self.uncertain
@@ -116,8 +117,11 @@ def identity(size: int) -> Matrix:
 
 def _orthogonal_axes(mapped_axes: Matrix, remainder: Row) -> tuple[Matrix, Matrix]:
     """Return nearly orthogonal axes, the first along the longest edge, and their inverse."""
-    sizes = [float(each.abs_upper()) + 1e-300 for each in remainder]
-    edges = [[float(each.mid()) * sizes[j] for j, each in enumerate(row)] for row in mapped_axes]
+    sizes = [float(component.abs_upper()) + 1e-300 for component in remainder]
+    edges = [
+        [float(component.mid()) * sizes[j] for j, component in enumerate(row)]
+        for row in mapped_axes
+    ]
     lengths = [math.hypot(*column) for column in zip(*edges, strict=True)]
     if not (max(lengths) > 0.0 and math.isfinite(sum(lengths))):
         return identity(len(remainder)), identity(len(remainder))
@@ -127,8 +131,8 @@ def _orthogonal_axes(mapped_axes: Matrix, remainder: Row) -> tuple[Matrix, Matri
         norm = x * x + y * y
         return [[x, -y], [y, x]], [[x / norm, y / norm], [-y / norm, x / norm]]
     order = np.argsort(lengths)[::-1]
-    found = np.linalg.qr(np.array(edges)[:, order] / max(lengths))[0]
-    axes = [[ball(float(each)) for each in row] for row in found]
+    basis = np.linalg.qr(np.array(edges)[:, order] / max(lengths))[0]
+    axes = [[ball(float(component)) for component in row] for row in basis]
     inverse: Matrix = arb_mat(axes).inv().table()
     return axes, inverse
 
@@ -161,7 +165,7 @@ def majorants(speed: int, forces: tuple[int, ...], precision: int) -> tuple[Row,
     `speed` and `forces` bound h omega and the coefficients of the forces times h^2, as exponents of
     2^(1/4). `precision` is in bits; the order is 0 where none suffices.
     """
-    strong = [_root_power(one) for one in forces]
+    strong = [_root_power(force) for force in forces]
     angle, sine = [ZERO, _root_power(speed)], [ONE]
     least = ball(2) ** -precision
     for k in range(MAX_ORDER):
@@ -200,7 +204,9 @@ class Flow(NamedTuple):
         """Enclose rotation and rate at the end."""
         order = len(self.angle)
         far = ball(0, self.remainder)
-        rate = sum((k * one for k, one in enumerate(self.angle)), ZERO) + order * far
+        rate = (
+            sum((k * coefficient for k, coefficient in enumerate(self.angle)), ZERO) + order * far
+        )
         return [sum(self.angle, ZERO) + far, rate / self.length]
 
 
@@ -246,7 +252,7 @@ def flow(
     sine, cosine, angle = _series(start, corner.middle(), along, normal, h, order)
 
     def left_out(of: list[int]) -> Ball:
-        return dot([_root_power(one) for one in of], sine_bounds[STIFFNESS_ORDER + 1 :: -1])
+        return dot([_root_power(size) for size in of], sine_bounds[STIFFNESS_ORDER + 1 :: -1])
 
     by_scale = None
     if ground.spread is not None and during.spread is not None:
@@ -277,37 +283,37 @@ def _series(
     return sine, cosine, angle
 
 
-def variation(found: Flow, away: Row, lean: Ball, scale: Ball) -> tuple[Matrix, Row]:
+def variation(step: Flow, away: Row, lean: Ball, scale: Ball) -> tuple[Matrix, Row]:
     """Enclose the derivatives of the end of a step by its start and by the scale.
 
     They hold for all states up to `away` from the centre, and for angles theta and scales that
     differ by up to `lean` and `scale`, :eq:`eq-proof-variation` and :eq:`eq-proof-inputs`.
     """
-    h, normal, along = found.length, found.normal, found.along
+    h, normal, along = step.length, step.normal, step.along
     stiff = [
-        cauchy_product(normal, found.cosine, k) - cauchy_product(along, found.sine, k)
+        cauchy_product(normal, step.cosine, k) - cauchy_product(along, step.sine, k)
         for k in range(STIFFNESS_ORDER + 1)
     ]
-    other = ZERO if found.by_scale is None else found.by_scale.force * magnitude(scale)
-    farthest = 2 * (magnitude(away[0]) + h * magnitude(away[1])) + 2 * magnitude(lean) + other
-    rest = found.coarse + found.force * farthest + other
+    by_scale = ZERO if step.by_scale is None else step.by_scale.force * magnitude(scale)
+    farthest = 2 * (magnitude(away[0]) + h * magnitude(away[1])) + 2 * magnitude(lean) + by_scale
+    neglected = step.coarse + step.force * farthest + by_scale
 
     def column(start: Row, push: Row, error: Ball) -> Row:
         series = list(start)
         for k in range(STIFFNESS_ORDER + 1):
             more = push[k] if push else ZERO
             series.append((cauchy_product(stiff, series, k) + more) / ((k + 1) * (k + 2)))
-        size = [abs(one) for one in series]
-        defect = rest * sum(size, ZERO) + error
-        for i, one in enumerate(stiff):
-            defect += abs(one) * sum(size[STIFFNESS_ORDER + 1 - i :], ZERO)
+        size = [abs(coefficient) for coefficient in series]
+        defect = neglected * sum(size, ZERO) + error
+        for i, factor in enumerate(stiff):
+            defect += abs(factor) * sum(size[STIFFNESS_ORDER + 1 - i :], ZERO)
         bound = magnitude(defect)
-        rate = sum((k * one for k, one in enumerate(series)), ZERO)
+        rate = sum((k * coefficient for k, coefficient in enumerate(series)), ZERO)
         return [sum(series, ZERO) + ball(0, bound), (rate + ball(0, 2 * bound)) / h]
 
     (a, b), (c, d) = column([ONE, ZERO], [], ZERO), column([ZERO, ONE], [], ZERO)
     matrix = [[a, c * h], [b, d * h]]
-    pushed = found.by_scale
+    pushed = step.by_scale
     if pushed is None:
         return matrix, [ZERO, ZERO]
     return matrix, column([ZERO, ZERO], pushed.push, pushed.coarse + pushed.force * farthest)
@@ -322,20 +328,20 @@ def advance(
     """
     span = UNIT * h
     during, box = ground.at(span), states.box()
-    found = flow(states.centre, box, corner, ground, during, h)
+    step = flow(states.centre, box, corner, ground, during, h)
     inputs = states.uncertain
     if not isinstance(inputs, Deviations):
-        matrix, _ = variation(found, states.deviations(), ZERO, ZERO)
-        return states.image(found.end(), matrix, [[], []]), bound_motion(box, corner, during, span)
+        matrix, _ = variation(step, states.deviations(), ZERO, ZERO)
+        return states.image(step.end(), matrix, [[], []]), bound_motion(box, corner, during, span)
     sign = corner.sign
-    matrix, by_scale = variation(found, states.deviations(), inputs.angle(sign), inputs.scale)
+    matrix, by_scale = variation(step, states.deviations(), inputs.angle(sign), inputs.scale)
     # the rotation is s theta less an angle whose equation does not contain theta
     by_angle = [sign * (1 - matrix[0][0]), -sign * matrix[1][0]]
     free = [
         list(Deviations.of(sign, scale=scale, angle=angle))
         for scale, angle in zip(by_scale, by_angle, strict=True)
     ]
-    return states.image(found.end(), matrix, free), bound_motion(box, corner, during, span)
+    return states.image(step.end(), matrix, free), bound_motion(box, corner, during, span)
 
 
 class ShortFlow(NamedTuple):
@@ -356,7 +362,7 @@ def short_flow(
     by_scale = ZERO
     if during.spread is not None:
         by_scale = ball(0, magnitude(longest * acceleration_bound(corner, during.spread.by_scale)))
-    matrix = [[each + ball(0, growth) for each in row] for row in identity(2)]
+    matrix = [[entry + ball(0, growth) for entry in row] for row in identity(2)]
     return ShortFlow(matrix, ball(0, magnitude(longest * stiff)), by_scale)
 
 

@@ -55,14 +55,14 @@ def enclose_impact(
     intervals on either side of now, or of the same one.
     """
     centre = _reset(states.centre, old.middle(), new.middle(), before.middle, after.middle)
-    whole = _reset(states.box(), old, new, before, after)
+    reset = _reset(states.box(), old, new, before, after)
     image = states.image(
-        centre.state, whole.matrix, whole.by_inputs if states.uncertain else [[], []]
+        centre.state, reset.matrix, reset.by_inputs if states.uncertain else [[], []]
     )
     rotation, rate = image.box()
-    approach_rate = whole.approach_rate
-    height = magnitude(rotation.union(approach_rate * magnitude(whole.at)))
-    return ImpactEnclosure(image, whole.at, height, magnitude(rate.union(approach_rate)))
+    approach_rate = reset.approach_rate
+    height = magnitude(rotation.union(approach_rate * magnitude(reset.at)))
+    return ImpactEnclosure(image, reset.at, height, magnitude(rate.union(approach_rate)))
 
 
 def _reset(
@@ -73,8 +73,8 @@ def _reset(
     require(rate * old.sign < 0, "an impact that hardly touches the ground")
     reach = 2 * magnitude(rotation) / ball(rate.abs_lower()) + ball(2) ** -400
     window = magnitude(reach) * WITHIN_ONE
-    one, other = before.at(window), after.at(window)
-    ground = one.union(other)
+    earlier, later = before.at(window), after.at(window)
+    ground = earlier.union(later)
     before_impact = bound_motion(state, old, ground, window)
     at = -rotation / before_impact.rate
     require(

@@ -32,7 +32,7 @@ class Deviations(NamedTuple):
     @classmethod
     def within(cls, restitution: float, scale: float, angle: float) -> "Deviations":
         """Return the deviations within tolerances."""
-        e, factor, lean = (ball(0, one) for one in (restitution, scale, angle))
+        e, factor, lean = (ball(0, tolerance) for tolerance in (restitution, scale, angle))
         return cls(e, e, factor, lean, lean)
 
     @classmethod
@@ -53,15 +53,15 @@ class Deviations(NamedTuple):
     @property
     def exact(self) -> bool:
         """Whether all of them are single numbers."""
-        return all(one.is_exact() for one in self)
+        return all(deviation.is_exact() for deviation in self)
 
     def centred(self) -> "Deviations":
         """Return the deviations less their middles."""
-        return self._make(one - one.mid() for one in self)
+        return self._make(deviation - deviation.mid() for deviation in self)
 
     def halves(self, influences: list[float]) -> "tuple[Deviations, Deviations]":
         """Halve the set along the input of greatest influence, or the widest if none has any."""
-        sizes = influences if any(influences) else [float(one.rad()) for one in self]
+        sizes = influences if any(influences) else [float(deviation.rad()) for deviation in self]
         j = sizes.index(max(sizes))
         half = self[j].rad() / 2
         low, high = (self[j].mid() + sign * half + ball(0, half) for sign in (-1, 1))
@@ -173,9 +173,13 @@ class PiecewiseGround:
 
     def is_continuous_after(self, interval: int) -> bool:
         """Whether the ground acceleration is proved continuous at the end of an interval."""
-        components = [one for one in (self.motion.horizontal, self.motion.vertical) if one]
-        lines = all(one.polynomials is None for one in components)
-        ends = interval == self.count - 1 and any(one.samples[-1] != 0.0 for one in components)
+        components = [
+            component for component in (self.motion.horizontal, self.motion.vertical) if component
+        ]
+        lines = all(component.polynomials is None for component in components)
+        ends = interval == self.count - 1 and any(
+            component.samples[-1] != 0.0 for component in components
+        )
         return interval >= self.count or (lines and not ends)
 
     def ground(self, interval: int) -> GroundPiece:
@@ -183,16 +187,18 @@ class PiecewiseGround:
         interval = min(interval, self.count)
         if interval not in self._known:
             gravity = ball(self.slope.gravity)
-            found = self._scaled_ground(interval, self.scale, gravity)
+            piece = self._scaled_ground(interval, self.scale, gravity)
             if not self.scale.is_exact():
                 middle = self._scaled_ground(interval, self.scale.mid(), gravity)
                 by_scale = self._scaled_ground(interval, ONE, ZERO)
-                found = found._replace(spread=GroundSpread(middle, by_scale))
-            self._known[interval] = found
+                piece = piece._replace(spread=GroundSpread(middle, by_scale))
+            self._known[interval] = piece
         return self._known[interval]
 
     def _scaled_ground(self, interval: int, scale: Ball, gravity: Ball) -> GroundPiece:
-        across, up = (self._component(interval, scale, vertical=one) for one in (False, True))
+        across, up = (
+            self._component(interval, scale, vertical=vertical) for vertical in (False, True)
+        )
         if self.slope.level:
             return GroundPiece(across, [gravity + up[0], *up[1:]])
         sine, cosine = ball(self.slope.inclination).sin_cos()
@@ -209,23 +215,23 @@ class PiecewiseGround:
         if signal is None or interval >= self.count:
             return [ZERO]
         if signal.polynomials is None:
-            first, last = (ball(float(signal.samples[interval + each])) for each in (0, 1))
+            first, last = (ball(float(signal.samples[interval + end])) for end in (0, 1))
             row = [first, last - first]
         else:
-            row = [ball(float(each)) for each in signal.polynomials[interval]]
+            row = [ball(float(coefficient)) for coefficient in signal.polynomials[interval]]
         step = self.length(interval)
-        return [scale * each / step**power for power, each in enumerate(row)]
+        return [scale * coefficient / step**power for power, coefficient in enumerate(row)]
 
     def ground_over(self, interval: int, elapsed: Ball, span: Ball) -> GroundPiece:
         """Enclose the ground at all times of a span that starts in an interval [s]."""
-        found: GroundPiece | None = None
+        enclosure: GroundPiece | None = None
         while True:
             left = self.length(interval) - elapsed
             inside = ZERO.union(span) if span < left else ZERO.union(left)
-            here = self.ground(interval).at(elapsed + inside)
-            found = here if found is None else found.union(here)
+            piece = self.ground(interval).at(elapsed + inside)
+            enclosure = piece if enclosure is None else enclosure.union(piece)
             if span < left:
-                return found
+                return enclosure
             span, interval, elapsed = span - left, interval + 1, ZERO
 
 
@@ -252,7 +258,7 @@ class Problem(PiecewiseGround):
 
         `still_step` is times p here.
         """
-        fastest = max(one.radius / one.inertia for one in (block.left, block.right))
+        fastest = max(corner.radius / corner.inertia for corner in (block.left, block.right))
         frequency = (slope.gravity * fastest) ** 0.5
         return cls(
             motion, ball(scale) + inputs.scale, slope, still_step / frequency,

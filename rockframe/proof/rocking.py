@@ -162,7 +162,7 @@ class RockingProver:
             )
             require(third * self.sign > 0, _UNKNOWN_SIDE)
             risen = [delay**3 / 6, delay**2 / 2]
-            still = [UNIT * (magnitude(third) * each) * self.sign for each in risen]
+            still = [UNIT * (magnitude(third) * factor) * self.sign for factor in risen]
         return SetOfStates.from_box(still, self.uncertain)
 
     # ---- rocking
@@ -232,7 +232,7 @@ class RockingProver:
     def _predict_impact(self, ground: GroundPiece, left: Ball) -> Ball | None:
         """Estimate when the middle of the set strikes, None if it does not; proves nothing."""
         span, centre, corner = float(left.mid()), self.states.centre, self.corner
-        place, rate = (float(each.mid()) * self.sign for each in centre)
+        place, rate = (float(component.mid()) * self.sign for component in centre)
         pull = float(abs(ground.normal[0]).upper() + abs(ground.along[0]).upper())
         most = 2.0 * float(corner.ratio.mid()) * pull
         if not self.just_lifted and place > abs(rate) * span + most * span * span:
@@ -246,8 +246,8 @@ class RockingProver:
                 left = (left / 2).mid()
         else:
             return None
-        exact = [each.mid() for each in exact]
-        row = [float(each) * self.sign for each in exact]
+        exact = [coefficient.mid() for coefficient in exact]
+        row = [float(coefficient) * self.sign for coefficient in exact]
         row = row[1:] if self.just_lifted else row
         places = (k / _SAMPLES for k in range(1, _SAMPLES + 1))
         high = next((x for x in places if polynomial_value(row, x) <= 0.0), None)
@@ -287,7 +287,7 @@ class RockingProver:
             return False
         steady = bounds.rate * s > 0 or bounds.rate * s < 0
         ends = self.states.box()[0], new.box()[0]
-        return not (steady and all(one * s < limit for one in ends))
+        return not (steady and all(end * s < limit for end in ends))
 
     def _narrow_overturning_time(self, ground: GroundPiece, step: Ball, *, rises: bool) -> None:
         """Narrow down the time at which the overturning angle is first reached."""
@@ -296,10 +296,10 @@ class RockingProver:
         if rises and self.states.box()[0] * self.sign < self.corner.limit:
             for _ in range(_NARROWINGS):
                 middle = ((low + high) / 2).mid()
-                there = advance(self.states, self.corner, ground, middle)[0].box()[0] * self.sign
-                if there < self.corner.limit:
+                rotation = advance(self.states, self.corner, ground, middle)[0].box()[0] * self.sign
+                if rotation < self.corner.limit:
                     low = middle
-                elif there > self.corner.limit:
+                elif rotation > self.corner.limit:
                     high = middle
                 else:
                     break
@@ -334,16 +334,16 @@ class RockingProver:
         if float(speed) > SLOW_IMPACT * problem.frequency or self.interval >= problem.count:
             return False
         try:
-            found = follow_bounces(problem, Instant(self.interval, self.elapsed), height, speed)
+            outcome = follow_bounces(problem, Instant(self.interval, self.elapsed), height, speed)
         except Undecided:  # by the motion of the ground; the course may continue without this proof
             return False
-        if found is None or (isinstance(found, UpliftState) and not lift):
+        if outcome is None or (isinstance(outcome, UpliftState) and not lift):
             return False
-        if isinstance(found, UpliftState):
-            self.sign, (self.interval, self.elapsed) = found.sign, found.instant
-            self.states = SetOfStates.from_box(found.box, self.uncertain)
+        if isinstance(outcome, UpliftState):
+            self.sign, (self.interval, self.elapsed) = outcome.sign, outcome.instant
+            self.states = SetOfStates.from_box(outcome.box, self.uncertain)
         else:
-            self.sign, (self.interval, self.elapsed) = 0, found
+            self.sign, (self.interval, self.elapsed) = 0, outcome
             self.states = SetOfStates.from_box([ZERO, ZERO], [])
         self.last_impact, self.just_lifted = None, False
         return True
@@ -356,7 +356,7 @@ class RockingProver:
         still = problem.ground(self.interval)
         rotation, rate = self.states.box()
         energy = rate * rate / 2 + _potential(rotation, near, still)
-        steep = [_potential(one.limit * one.sign, one, still) for one in (near, far)]
+        steep = [_potential(corner.limit * corner.sign, corner, still) for corner in (near, far)]
         e, back = far.restitution, near.restitution
         lasting = energy < steep[0] and e * e * energy < steep[1] and e * back <= 1
         if lasting and rotation * self.sign < near.limit:

@@ -26,7 +26,7 @@ def prove_for_set(attempt: Attempt, within: Tolerances) -> Proof:
     comes first.
     """
     inputs = Deviations.within(within.restitution, within.scale, within.angle)
-    known, waiting = list[_Part](), list[_Part]()
+    decided, waiting = list[_Part](), list[_Part]()
     whole: _Part | None = None
     for precision in PRECISIONS if inputs.exact else PRECISIONS[:1]:
         before = whole
@@ -35,18 +35,18 @@ def prove_for_set(attempt: Attempt, within: Tolerances) -> Proof:
         if whole.proof.decided or (before and _ends_alike(before.proof, whole.proof)):
             break
     assert whole is not None  # noqa: S101
-    (known if whole.proof.decided else waiting).append(whole)
+    (decided if whole.proof.decided else waiting).append(whole)
     with working_precision(PRECISIONS[0]):
-        while waiting and len(known) + len(waiting) < within.parts and not inputs.exact:
+        while waiting and len(decided) + len(waiting) < within.parts and not inputs.exact:
             large = heappop(waiting)
             for order, half in enumerate(large.inputs.halves(large.influences)):
                 part = _Part(large.share / 2, 2 * large.order + order, half, *attempt(half))
                 if part.proof.decided:
-                    known.append(part)
+                    decided.append(part)
                 else:
                     heappush(waiting, part)
     return replace(
-        _joined_proof(known, sorted(waiting)),
+        _joined_proof(decided, sorted(waiting)),
         restitution_tolerance=within.restitution,
         scale_tolerance=within.scale,
         angle_tolerance=within.angle,
@@ -106,31 +106,31 @@ class _Part(NamedTuple):
     influences: list[float]
 
 
-def _joined_proof(known: list[_Part], rest: list[_Part]) -> Proof:
+def _joined_proof(decided: list[_Part], undecided: list[_Part]) -> Proof:
     """Return the proof for a set from the proofs of its parts."""
-    every = [part.proof for part in (*known, *rest)]
+    every = [part.proof for part in (*decided, *undecided)]
     shares = {
-        verdict: float(abs(sum(part.share for part in known if part.proof.verdict == verdict)))
+        verdict: float(abs(sum(part.share for part in decided if part.proof.verdict == verdict)))
         for verdict in (SAFE, OVERTURNS)
     }
-    verdict, reason, proofs = UNDECIDED, "", [part.proof for part in rest[:1] or known]
+    verdict, reason, proofs = UNDECIDED, "", [part.proof for part in undecided[:1] or decided]
     if 1.0 in shares.values():
-        verdict = known[0].proof.verdict
+        verdict = decided[0].proof.verdict
     elif len(every) == 1:
         reason = every[0].reason
-    elif rest:
-        reason = f"{rest[0].proof.reason}, in the largest undecided part of the set"
+    elif undecided:
+        reason = f"{undecided[0].proof.reason}, in the largest undecided part of the set"
     else:
         reason = "the verdict is not the same of all of them"
-    falls = [found for found in proofs if found.verdict != SAFE]
+    falls = [proof for proof in proofs if proof.verdict != SAFE]
     return replace(
         every[0],
         verdict=verdict,
         reason=reason,
-        earliest=min((found.earliest for found in falls), default=math.nan),
-        latest=max((found.latest for found in falls), default=math.nan),
-        width=max(found.width for found in every),
-        impacts=max(found.impacts for found in every),
+        earliest=min((fall.earliest for fall in falls), default=math.nan),
+        latest=max((fall.latest for fall in falls), default=math.nan),
+        width=max(proof.width for proof in every),
+        impacts=max(proof.impacts for proof in every),
         parts=len(every),
         safe_share=shares[SAFE],
         overturning_share=shares[OVERTURNS],

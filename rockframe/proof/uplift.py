@@ -24,25 +24,25 @@ def find_uplift(
         if not problem.is_continuous_after(interval):
             raise
         following, length = (of(interval + 1) for of in (problem.ground, problem.length))
-        found = _uplift_about_sample(problem, ground, left, following, length)
-        return None if found is None or found[0] > left else found
+        uplift = _uplift_about_sample(problem, ground, left, following, length)
+        return None if uplift is None or uplift[0] > left else uplift
     return _earlier_uplift(times)
 
 
 def _uplift_about_sample(
     problem: Problem, ground: GroundPiece, left: Ball, following: GroundPiece, length: Ball
 ) -> tuple[Ball, int] | None:
-    found = dict[int, Ball | None]()
+    times = dict[int, Ball | None]()
     for side in (1, -1):
-        here, there = (uplift_guard(problem, each, side) for each in (ground, following))
-        if there[0] > 0:
-            found[side] = first_zero(here, left)
-            if found[side] is None:
-                after = first_zero(there, length)
-                found[side] = None if after is None else left + after
+        guard, next_guard = (uplift_guard(problem, piece, side) for piece in (ground, following))
+        if next_guard[0] > 0:
+            times[side] = first_zero(guard, left)
+            if times[side] is None:
+                after = first_zero(next_guard, length)
+                times[side] = None if after is None else left + after
         else:
-            found[side] = _zero_about_sample(here, left, there, length)
-    return _earlier_uplift(found)
+            times[side] = _zero_about_sample(guard, left, next_guard, length)
+    return _earlier_uplift(times)
 
 
 def uplift_guard(problem: Problem, ground: GroundPiece, side: int) -> Row:
@@ -52,41 +52,41 @@ def uplift_guard(problem: Problem, ground: GroundPiece, side: int) -> Row:
     return [normal * tangent + side * along for normal, along in pairs]
 
 
-def _zero_about_sample(here: Row, left: Ball, there: Row, length: Ball) -> Ball:
+def _zero_about_sample(before: Row, left: Ball, after: Row, length: Ball) -> Ball:
     """Enclose the zero of a guard near a sample; polynomials before and after it are given."""
     low, high = left, length
     for _ in range(_HALVINGS):
         low = (low / 2).mid()
-        falls = polynomial_value(derivative_of(here), (left - low).union(left)) < 0
+        falls = polynomial_value(derivative_of(before), (left - low).union(left)) < 0
         if (
-            polynomial_value(here, left - low) > 0
+            polynomial_value(before, left - low) > 0
             and falls
-            and first_zero(here, left - low) is None
+            and first_zero(before, left - low) is None
         ):
             break
     else:
         raise Undecided(_VERGE)
     for _ in range(_HALVINGS):
-        if not polynomial_value(there, high / 2) < 0:
+        if not polynomial_value(after, high / 2) < 0:
             break
         high = (high / 2).mid()
     if not (
-        polynomial_value(there, high) < 0
-        and polynomial_value(derivative_of(there), ZERO.union(high)) < 0
+        polynomial_value(after, high) < 0
+        and polynomial_value(derivative_of(after), ZERO.union(high)) < 0
     ):
         raise Undecided(_VERGE)
     return (left - low).union(left + high)
 
 
 def _earlier_uplift(times: dict[int, Ball | None]) -> tuple[Ball, int] | None:
-    found = [(at, side) for side, at in times.items() if at is not None]
-    if len(found) < 2:
-        return found[0] if found else None
-    one, other = found
-    if one[0] < other[0]:
-        return one
-    if other[0] < one[0]:
-        return other
+    uplifts = [(at, side) for side, at in times.items() if at is not None]
+    if len(uplifts) < 2:
+        return uplifts[0] if uplifts else None
+    first, second = uplifts
+    if first[0] < second[0]:
+        return first
+    if second[0] < first[0]:
+        return second
     message = "the ground falls away under the block"
     raise Undecided(message)
 
@@ -117,10 +117,10 @@ def _first_zero(
             )
         return span
     middle = ((low * 5 + high * 4) / 9).mid()
-    there = polynomial_value(guard, middle)
-    if halvings == 0 or not (there > 0 or there < 0):
+    value = polynomial_value(guard, middle)
+    if halvings == 0 or not (value > 0 or value < 0):
         raise Undecided(_VERGE)
-    found = _first_zero(guard, rate, low, middle, halvings - 1)
-    if found is None and there > 0:
-        found = _first_zero(guard, rate, middle, high, halvings - 1)
-    return found
+    zero = _first_zero(guard, rate, low, middle, halvings - 1)
+    if zero is None and value > 0:
+        zero = _first_zero(guard, rate, middle, high, halvings - 1)
+    return zero

@@ -164,12 +164,12 @@ class Proof:
                 f"{sentence}. Of the set {self.safe_share:.3%} are proved safe for ever and "
                 f"{self.overturning_share:.3%} to overturn, {of}."
             )
-        found = "does not overturn, however long it stands on the still ground afterwards"
+        behaviour = "does not overturn, however long it stands on the still ground afterwards"
         if self.verdict == OVERTURNS:
             least = _rounded(self.earliest, ROUND_FLOOR)
-            found = f"overturns between {least} s and {_rounded(self.latest, ROUND_CEILING)} s"
+            behaviour = f"overturns between {least} s and {_rounded(self.latest, ROUND_CEILING)} s"
         return (
-            f"Proved: the block {found}; {of}, in interval arithmetic. It is a theorem on the "
+            f"Proved: the block {behaviour}; {of}, in interval arithmetic. It is a theorem on the "
             "model, and says nothing of how well that describes the block."
         )
 

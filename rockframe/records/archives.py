@@ -102,8 +102,8 @@ def unpack_members(file: IO[bytes], name: str, size: int) -> Iterator[ArchiveMem
             yield _check_not_packed(member)
             continue
         try:
-            for one in _unpacked_members(io.BytesIO(inner), f"{name}/{member.name}", budget):
-                yield _check_not_packed(replace(one, name=f"{member.name}/{one.name}"))
+            for entry in _unpacked_members(io.BytesIO(inner), f"{name}/{member.name}", budget):
+                yield _check_not_packed(replace(entry, name=f"{member.name}/{entry.name}"))
         except RecordError as problem:  # other files may be readable
             if budget.is_exceeded:
                 raise

@@ -110,83 +110,94 @@ def _components(source: Source, request: Request, file: Any) -> list[FileCompone
     ]
     if not waveforms:
         raise source.refuse(found="no waveforms", expected=_EXPECTED)
-    stations = {one.group for one in waveforms}
-    tags = {one.tag for one in waveforms}
+    stations = {waveform.group for waveform in waveforms}
+    tags = {waveform.tag for waveform in waveforms}
 
-    pieces = Counter((one.codes, one.tag) for one in waveforms)
+    pieces = Counter((waveform.codes, waveform.tag) for waveform in waveforms)
 
-    def component(one: _Waveform) -> FileComponent:
-        short = one.channel if len(stations) == 1 else one.codes
+    def component(waveform: _Waveform) -> FileComponent:
+        short = waveform.channel if len(stations) == 1 else waveform.codes
 
         def samples() -> Record:
-            count = pieces[one.codes, one.tag]
+            count = pieces[waveform.codes, waveform.tag]
             if request.every and count > 1:  # asked for by its whole name a piece is read
-                found = f"{count} pieces of {one.codes} {one.tag}"
+                found = f"{count} pieces of {waveform.codes} {waveform.tag}"
                 raise source.refuse(found=found, expected="a channel without gaps")
             with damaged_file_errors(source, _KIND, _EXPECTED):
-                return _samples(source, request, file, one)
+                return _samples(source, request, file, waveform)
 
         return FileComponent(
-            short if len(tags) == 1 else f"{short} {one.tag}",
+            short if len(tags) == 1 else f"{short} {waveform.tag}",
             samples,
-            orientation_of(one.channel),
-            aliases=(one.name, one.codes, one.channel, f"{one.codes} {one.tag}"),
+            orientation_of(waveform.channel),
+            aliases=(
+                waveform.name,
+                waveform.codes,
+                waveform.channel,
+                f"{waveform.codes} {waveform.tag}",
+            ),
         )
 
-    return [component(one) for one in waveforms]
+    return [component(waveform) for waveform in waveforms]
 
 
-def _samples(source: Source, request: Request, file: Any, one: _Waveform) -> Record:
-    variable = file.groups["Waveforms"].groups[one.group].variables[one.name]
-    values = _values(source, one, variable)
+def _samples(source: Source, request: Request, file: Any, waveform: _Waveform) -> Record:
+    variable = file.groups["Waveforms"].groups[waveform.group].variables[waveform.name]
+    values = _values(source, waveform, variable)
     rate = float(variable.getncattr("sampling_rate"))
     if not (math.isfinite(rate) and rate > 0.0):
-        found = f"a sampling rate of {rate!r} Hz for {one.name}"
+        found = f"a sampling rate of {rate!r} Hz for {waveform.name}"
         raise source.refuse(found=found, expected="one above zero")
     time_step = float(f"{1.0 / rate:.12g}")
     checked_time_step(source, request, time_step, None)
     start = _EPOCH + timedelta(microseconds=int(variable.getncattr("starttime")) // 1000)
     metadata: Metadata = {
-        **metadata_of_codes(one.codes),
-        "processing": one.tag,
+        **metadata_of_codes(waveform.codes),
+        "processing": waveform.tag,
         "record_time": f"{start.isoformat()}Z",
     }
-    stated = None if request.unit is not None else _stated_unit(file, one)
+    stated = None if request.unit is not None else _stated_unit(file, waveform)
     if stated is not None and _COUNTS.search(stated) is None:
         unit, as_read, _ = choose_unit(source, request, stated, None)
         metadata["unit_as_read"] = as_read
         return Record(time_step, values, unit, metadata)
-    response = None if request.unit is not None else _response(source, request, file, one, start)
+    response = (
+        None if request.unit is not None else _response(source, request, file, waveform, start)
+    )
     missing = (
-        f"no unit of {one.name}, and no response of the instrument",
+        f"no unit of {waveform.name}, and no response of the instrument",
         "the argument unit, which is 'cm/s^2' for what gmprocess has processed, or StationXML, "
         "for counts",
     )
     return record_from_counts(source, request, values, time_step, metadata, response, missing)
 
 
-def _values(source: Source, one: _Waveform, variable: Any) -> Array:
+def _values(source: Source, waveform: _Waveform, variable: Any) -> Array:
     count, *more = map(int, variable.shape)
     kind = variable.datatype
     if more or not 2 <= count <= MAXIMUM_SAMPLES:
         expected = f"2 to {MAXIMUM_SAMPLES} samples in a row"
-        raise source.refuse(found=f"{one.name} of the shape {variable.shape}", expected=expected)
+        raise source.refuse(
+            found=f"{waveform.name} of the shape {variable.shape}", expected=expected
+        )
     if not isinstance(kind, np.dtype) or cast("np.dtype[Any]", kind).kind not in "fiu":
-        raise source.refuse(found=f"{one.name} without numbers", expected="whole or real numbers")
+        raise source.refuse(
+            found=f"{waveform.name} without numbers", expected="whole or real numbers"
+        )
     values = np.asarray(variable[:], dtype=np.float64)
     check_finite(source, values)
     return values
 
 
-def _stated_unit(file: Any, one: _Waveform) -> str | None:
+def _stated_unit(file: Any, waveform: _Waveform) -> str | None:
     """Find the unit that gmprocess states for a stream; None if there is none."""
     groups = file.groups.get("AuxiliaryData")
-    for name in (_STATISTICS, one.group):
+    for name in (_STATISTICS, waveform.group):
         groups = None if groups is None else groups.groups.get(name)
     if groups is None:
         return None
     # the channels of a stream have the same tag, and codes that differ in the last letter
-    start = f"{one.codes[:-1]}_{one.tag}"
+    start = f"{waveform.codes[:-1]}_{waveform.tag}"
     text = _text_in(groups, start)
     if text is None:
         return None
@@ -198,12 +209,14 @@ def _stated_unit(file: Any, one: _Waveform) -> str | None:
 
 
 def _response(
-    source: Source, request: Request, file: Any, one: _Waveform, start: datetime
+    source: Source, request: Request, file: Any, waveform: _Waveform, start: datetime
 ) -> InstrumentResponse | None:
     if request.response is not None:
-        return InstrumentResponses(source, request).find(one.codes, start)
-    xml = _text_in(file.groups["Waveforms"].groups[one.group], "StationXML")
-    return None if xml is None else find_response(source_of(source.path, xml), one.codes, start)
+        return InstrumentResponses(source, request).find(waveform.codes, start)
+    xml = _text_in(file.groups["Waveforms"].groups[waveform.group], "StationXML")
+    return (
+        None if xml is None else find_response(source_of(source.path, xml), waveform.codes, start)
+    )
 
 
 def _text_in(group: Any, name: str) -> bytes | None:

@@ -90,11 +90,12 @@ def check_missing_values(source: Source, samples: Array) -> None:
     if not marked.any():
         return
     places = np.flatnonzero(marked)
-    others = np.flatnonzero(~marked)
-    if others.size:
-        after = np.searchsorted(others, places)
+    unmarked = np.flatnonzero(~marked)
+    if unmarked.size:
+        after = np.searchsorted(unmarked, places)
         beside = np.maximum(
-            size[others[np.maximum(after - 1, 0)]], size[others[np.minimum(after, others.size - 1)]]
+            size[unmarked[np.maximum(after - 1, 0)]],
+            size[unmarked[np.minimum(after, unmarked.size - 1)]],
         )
         places = places[beside < 0.5 * size[places]]
     if places.size:
@@ -170,11 +171,11 @@ def header_mismatch_warnings(
     """Compare the peaks and lengths that a header states with the samples."""
     return [
         words
-        for one in stated
+        for value in stated
         for words in (
-            _compare_length(source, samples.size, time_step, one)
-            if one.unit == LENGTH
-            else _compare_peak(source, samples, unit, one)
+            _compare_length(source, samples.size, time_step, value)
+            if value.unit == LENGTH
+            else _compare_peak(source, samples, unit, value)
         )
     ]
 

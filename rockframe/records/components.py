@@ -302,8 +302,8 @@ def _single_component(
     metadata: Metadata = {**record.metadata, **_metadata_of(chosen)}
     if len(components) > 1:
         names = ", ".join(str(entry.name) for entry in components[:_MAX_LISTED])
-        taken = f"component {chosen.name} taken (of {names})"
-        record = replace(record, history=(*record.history, taken))
+        choice = f"component {chosen.name} taken (of {names})"
+        record = replace(record, history=(*record.history, choice))
     requested = request.component
     if chosen.orientation.vertical is not None and requested is None:
         words = (
@@ -349,7 +349,7 @@ def _with_vertical(source: Source, across: FileComponent, upwards: FileComponent
         **_metadata_of(across),
         "vertical_component": upwards.name or "",
     }
-    own = tuple(sentence for sentence in raised.history if sentence not in level.history)
+    additional = tuple(sentence for sentence in raised.history if sentence not in level.history)
     return replace(
         level,
         samples=np.pad(level.samples, (0, count - level.samples.size)),
@@ -357,7 +357,7 @@ def _with_vertical(source: Source, across: FileComponent, upwards: FileComponent
         metadata=metadata,
         history=(
             *level.history,
-            *(f"vertical component: {sentence}" for sentence in own),
+            *(f"vertical component: {sentence}" for sentence in additional),
             f"component {across.name} taken as horizontal, {upwards.name} as vertical",
             *turned.history[len(raised.history) :],
             *steps,
@@ -404,12 +404,12 @@ def _find_component(
         lambda entry: channel is not None and entry.channel == channel,
     )
     for fits in tiers:
-        found = [entry for entry in components if fits(entry)]
-        if len(found) == 1:
-            return found[0]
-        if found:
+        matching = [entry for entry in components if fits(entry)]
+        if len(matching) == 1:
+            return matching[0]
+        if matching:
             raise source.refuse(
-                found=f"{len(found)} components that match {requested!r}: {_labels(found)}",
+                found=f"{len(matching)} components that match {requested!r}: {_labels(matching)}",
                 expected="one; give its channel number",
             )
     raise _missing_component_error(source, requested, components)

@@ -232,13 +232,13 @@ def _read(source: Source, request: Request) -> Record:
             "a first line such as 'Corrected acceleration (Format v01.20 with 13 text lines)'"
         )
         raise source.refuse(found=found, expected=expected, line=1)
-    wanted = [block for block in blocks if "accel" in block.kind.casefold()]
-    if not wanted:
+    accelerations = [block for block in blocks if "accel" in block.kind.casefold()]
+    if not accelerations:
         kinds = ", ".join(sorted({quoted_first_line(block.kind) for block in blocks})[:4])
         expected = "an acceleration"
         raise source.refuse(found=f"only {kinds}", expected=expected, line=blocks[0].index + 1)
-    cut = [] if blocks[-1] in wanted else _ends_inside(source, blocks[-1])
-    components = [_component(source, request, block, cut) for block in wanted]
+    cut = [] if blocks[-1] in accelerations else _ends_inside(source, blocks[-1])
+    components = [_component(source, request, block, cut) for block in accelerations]
     return choose_component(source, request, components)
 
 
@@ -345,9 +345,9 @@ def _samples(source: Source, request: Request, header: _Header, cut: list[str]) 
 
 
 def _data_line(source: Source, header: _Header) -> tuple[int, re.Match[str]]:
-    found = first_match(_DATA_LINE, source.top(3, header.data_at), header.data_at + 1)
-    if found is not None:
-        return found[1], found[0]
+    match_and_line = first_match(_DATA_LINE, source.top(3, header.data_at), header.data_at + 1)
+    if match_and_line is not None:
+        return match_and_line[1], match_and_line[0]
     index = min(header.data_at, len(source.lines) - 1)
     first = quoted_first_line(source.lines[index])
     expected = "a line such as '42000 acceleration pts, ..., units=cm/sec2(04),Format=(8F10.3)'"

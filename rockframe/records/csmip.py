@@ -103,18 +103,18 @@ _WIDE_GAP: Final = re.compile(r"\s{3,}")
 
 def channel_of(header: list[str], first: int) -> tuple[int | None, str, int]:
     """Find number and direction of a channel."""
-    found: tuple[int | None, str, int] = (None, "", first + 1)
+    channel: tuple[int | None, str, int] = (None, "", first + 1)
     for line, text in enumerate(header, start=first + 1):
         match = _CHANNEL.search(text)
         if match is None:
             continue
         name = match.group(2).strip()
         degrees = _DEGREES.match(name)
-        found = (integer_or_none(match.group(1)), degrees.group(1) if degrees else name, line)
+        channel = (integer_or_none(match.group(1)), degrees.group(1) if degrees else name, line)
         if name:
-            return found
+            return channel
     component = first_match(_COMPONENT, header, first + 1)
-    return found if component is None else (found[0], component[0][1], component[1])
+    return channel if component is None else (channel[0], component[0][1], component[1])
 
 
 def _peak_in_header(header: list[str], first: int) -> StatedValue | None:
@@ -151,9 +151,9 @@ def description(header: list[str]) -> Metadata:
     if lines:
         metadata["description"] = "corrected" if is_corrected(lines) else "uncorrected"
     metadata |= _event(lines, place + (2 if second else 1))
-    found = first_match(_STATION, lines)
-    if found is not None:
-        station, below = found
+    match_and_line = first_match(_STATION, lines)
+    if match_and_line is not None:
+        station, below = match_and_line
         if _COORDINATE.fullmatch(station.group(1)) is None:
             metadata["station"] = station.group(1)
         if below < len(lines) and lines[below]:
@@ -320,7 +320,7 @@ def _components(source: Source, request: Request) -> list[FileComponent]:
     blocks = _blocks(source)
     cut = _ends_inside(source)
     components: list[FileComponent] = []
-    there = False
+    has_data = False
     for first, end in pairwise(_starts(source, blocks)):
         held = [block for block in blocks if first <= block.line < end]
         pairs = None if blocks else find_pairs(source, first, end)
@@ -331,10 +331,10 @@ def _components(source: Source, request: Request) -> list[FileComponent]:
             components.append(_component_of_pairs(source, request, first, pairs))
         elif not held:
             components.append(_without_data(source, first, end))
-        there = there or bool(held) or pairs is not None
+        has_data = has_data or bool(held) or pairs is not None
         if len(components) > _MAX_CHANNELS:
             raise _too_many(source, first + 1)
-    return components if there else []
+    return components if has_data else []
 
 
 def _ends_inside(source: Source) -> list[str]:
@@ -470,10 +470,10 @@ def _time_step(source: Source, block: _Block) -> float:
         match = _INTERVAL.search(text)
         if match is None:
             continue
-        other = _seconds(source, match.group(1), number)
-        if not math.isclose(other, time_step, rel_tol=1e-6):
+        stated_step = _seconds(source, match.group(1), number)
+        if not math.isclose(stated_step, time_step, rel_tol=1e-6):
             raise source.refuse(
-                found=f"intervals of {time_step!r} s and, in line {number}, of {other!r} s",
+                found=f"intervals of {time_step!r} s and, in line {number}, of {stated_step!r} s",
                 expected="one time step",
                 line=line,
             )
@@ -496,8 +496,8 @@ def _layout(source: Source, block: _Block, text: str) -> FixedWidth:
     # it follows from the length of a full line
     per_line = min(_PER_LINE, max(block.count, 1))
     first = source.lines[block.line + 1].rstrip() if block.line + 1 < len(source.lines) else ""
-    width, rest = divmod(len(first), per_line)
-    if rest or width not in _WIDTHS:
+    width, remainder = divmod(len(first), per_line)
+    if remainder or width not in _WIDTHS:
         raise source.refuse(
             found=f"a line of {len(first)} characters ({quoted_first_line(first)})",
             expected=f"{per_line} numbers of one width",

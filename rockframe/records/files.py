@@ -78,23 +78,24 @@ def decompressed(name: str, data: bytes) -> bytes:
 
 
 def _only_member(name: str, data: bytes) -> tuple[str, bytes]:
-    found: list[tuple[str, bytes]] = []
+    files: list[tuple[str, bytes]] = []
     for member in unpack_members(io.BytesIO(data), name, len(data)):
         if member.hidden:
             continue
         if member.data is None:
             path = f"{name}/{member.name}"
             raise RecordError(path, found=member.reason, expected="a record file")
-        found.append((f"{name}/{member.name}", member.data))
-        if len(found) > 1:
+        files.append((f"{name}/{member.name}", member.data))
+        if len(files) > 1:
             held = (
-                f"an archive of several files, {', '.join(one.split('/')[-1] for one, _ in found)}"
+                "an archive of several files, "
+                f"{', '.join(file.split('/')[-1] for file, _ in files)}"
             )
             expected = "one record; rockframe.read_suite reads all that are in an archive"
             raise RecordError(name, found=held, expected=expected)
-    if not found:
+    if not files:
         raise RecordError(name, found="an archive without files", expected="a record file")
-    return found[0]
+    return files[0]
 
 
 def _read_open_file(file: IO[bytes]) -> tuple[str, bytes]:
@@ -170,15 +171,15 @@ def files_of(given: object) -> Iterator[Source | Unread]:
             cast("IO[bytes]", given), name if isinstance(name, str) else _OPEN
         )
     elif is_iterable(given) and not isinstance(given, str):
-        for one in given:
-            yield from files_of(one)
+        for record in given:
+            yield from files_of(record)
     else:
         path = path_of(given)
         try:
-            there, folder = path.exists(), path.is_dir()
+            exists, folder = path.exists(), path.is_dir()
         except (OSError, ValueError):
-            there = folder = False
-        if not there:
+            exists = folder = False
+        if not exists:
             found = f"no such file or folder, {short_repr(given)}"
             raise RecordError(str(path), found=found, expected="records")
         yield from _files_in_folder(path) if folder else _files_at_path(path)

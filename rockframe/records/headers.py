@@ -89,11 +89,11 @@ def required_match(
     source: Source, pattern: re.Pattern[str], lines: list[str], such_as: str, first: int = 1
 ) -> tuple[re.Match[str], int]:
     """Find the first line that contains a required pattern, and its number."""
-    found = first_match(pattern, lines, first)
-    if found is None:
+    match_and_line = first_match(pattern, lines, first)
+    if match_and_line is None:
         words = f"no such line below {quoted_first_line(chr(10).join(lines))}"
         raise source.refuse(found=words, expected=f"a line such as {such_as!r}", line=first)
-    return found
+    return match_and_line
 
 
 def renamed_keys(keys: Keys, names: Mapping[str, str]) -> Metadata:

@@ -69,20 +69,20 @@ class InstrumentResponses:
     def find(self, name: str, time: datetime) -> InstrumentResponse | None:
         """Find the response of a channel."""
         if self._stated is not None:
-            found = self._stated.response(name, time)
-            if found is None:
+            response = self._stated.response(name, time)
+            if response is None:
                 expected = f"the response of {name} at {time}"
                 raise self._stated.file.refuse(found="StationXML without it", expected=expected)
-            return found
+            return response
         station = ".".join(name.split(".")[:2])
         stem = Path(self._source.path).stem
         beside: dict[str, InstrumentResponse] = {}
         for path in self._files:
             if path.name.startswith(f"{stem}.") or station in path.name:
                 inventory = self._inventory(path)
-                found = None if inventory is None else inventory.response(name, time)
-                if found is not None:
-                    beside.setdefault(found.sha256, found)
+                response = None if inventory is None else inventory.response(name, time)
+                if response is not None:
+                    beside.setdefault(response.sha256, response)
         if len(beside) > 1:
             files = ", ".join(entry.file for entry in beside.values())
             expected = "one; name it by the argument response"

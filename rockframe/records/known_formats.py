@@ -28,8 +28,8 @@ _OWNER: Final = "rockframe.motion.register"
 
 # tried in this order; text accepts any column of numbers, so it is last
 _BUILT_IN: Final = tuple(
-    replace(one, own=True)
-    for one in (
+    replace(entry, own=True)
+    for entry in (
         *(PEER_AT2, COSMOS, CSMIP, SMC, ESM, KNET, GEONET, CWA),
         *(AFAD, BHRC, CSMNC, RESORCE, UNAM),
         *(ASDF, NETCDF, MINISEED, SAC),

@@ -171,7 +171,7 @@ class _Damage(NamedTuple):
     @classmethod
     def of(cls, messages: Iterable[warnings.WarningMessage]) -> "_Damage":
         """Read the warnings of ObsPy."""
-        texts = [str(one.message) for one in messages]
+        texts = [str(message.message) for message in messages]
         misfits = [match for text in texts if (match := _MISFIT.search(text)) is not None]
         skipped = [match for text in texts if (match := _SKIPPED.search(text)) is not None]
         return cls(

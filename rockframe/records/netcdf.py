@@ -227,9 +227,9 @@ def _values(dataset: xr.Dataset, name: str) -> Array | None:
     variable = dataset[name]
     unit = variable.attrs.get("units")
     if unit != str(Unit.METRE_PER_SECOND_SQUARED):
-        wanted = str(Unit.METRE_PER_SECOND_SQUARED)
+        expected = str(Unit.METRE_PER_SECOND_SQUARED)
         found = f"{name!r} in units {unit!r}"
-        raise NoMotionError(found, repr(wanted))
+        raise NoMotionError(found, repr(expected))
     return np.asarray(variable.values, dtype=np.float64)
 
 

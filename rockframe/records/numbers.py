@@ -315,13 +315,16 @@ def integer_or_none(text: str) -> int | None:
     return int(text)
 
 
-def same_start(one: object, other: object, time_step: float) -> bool:
+def same_start(start: object, other_start: object, time_step: float) -> bool:
     """Tell whether two starts agree to a tenth of a time step, or one of them is unknown."""
-    if one is None or other is None or one == other:
+    if start is None or other_start is None or start == other_start:
         return True
-    first, second = epoch_seconds(one), epoch_seconds(other)
+    first, second = epoch_seconds(start), epoch_seconds(other_start)
     if first is None or second is None:
-        (text, first), (other_text, second) = _text_and_seconds(one), _text_and_seconds(other)
+        (text, first), (other_text, second) = (
+            _text_and_seconds(start),
+            _text_and_seconds(other_start),
+        )
         if text != other_text:
             return False
     return abs(second - first) <= _SAME * time_step
@@ -353,10 +356,10 @@ def time_after(time: object, seconds: float) -> str:
 
 def _text_and_seconds(time: object) -> tuple[str, float]:
     """Divide the text of a start into that of the file and the seconds after it."""
-    found = _LATER.fullmatch(str(time).strip())
-    if found is None:
+    match = _LATER.fullmatch(str(time).strip())
+    if match is None:
         return str(time).strip(), 0.0
-    return found[1], float(found[3]) * (1.0 if found[2] == "plus" else -1.0)
+    return match[1], float(match[3]) * (1.0 if match[2] == "plus" else -1.0)
 
 
 def uniform_step(times: Array, fields: Sequence[str]) -> tuple[float, int | None]:
@@ -385,16 +388,16 @@ def uniform_step(times: Array, fields: Sequence[str]) -> tuple[float, int | None
         lower = float(np.max((times[1:] - times[0] - within[1:]) / count[1:]))
         upper = float(np.min((times[1:] - times[0] + within[1:]) / count[1:]))
         for step in _plain_numbers(lower, upper):
-            rest = times - times[0] - count * step
-            first_exact = np.all(np.abs(rest) <= 0.5 * _TIES * digit + noise)
-            if first_exact or _all_rounded(rest, float(np.max(digit))):
+            deviation = times - times[0] - count * step
+            first_exact = np.all(np.abs(deviation) <= 0.5 * _TIES * digit + noise)
+            if first_exact or _all_rounded(deviation, float(np.max(digit))):
                 return step, None
     return typical, _first_misfit(rises, typical)
 
 
-def _all_rounded(rest: Array, digit: float) -> bool:
-    spread = float(np.median(np.abs(rest - np.median(rest))))
-    return float(np.ptp(rest)) <= _TIES * digit and spread >= _ROUNDED_AT_ALL * digit
+def _all_rounded(deviation: Array, digit: float) -> bool:
+    spread = float(np.median(np.abs(deviation - np.median(deviation))))
+    return float(np.ptp(deviation)) <= _TIES * digit and spread >= _ROUNDED_AT_ALL * digit
 
 
 def _first_misfit(rises: Array, typical: float) -> int:

@@ -232,7 +232,7 @@ def peer_table(source: Source) -> dict[str, Known] | None:
         found = "no column with the names of files"
         expected = "columns such as 'Horizontal-1 Acc. Filename'"
         raise source.refuse(found=found, expected=expected, line=first + 1)
-    known: dict[str, Known] = {}
+    entries: dict[str, Known] = {}
     for place, row in enumerate(rows[1:], start=first + 2):
         # a comma inside a name would shift all fields after it
         if len(row) < len(heads) or any(field.strip() for field in row[len(heads) :]):
@@ -243,8 +243,8 @@ def peer_table(source: Source) -> dict[str, Known] | None:
         for head, axis in _FILES.items():
             name = _field_or_empty(fields.get(head, ""))
             if name:
-                known[name] = {**metadata, "axis": axis}
-    return known
+                entries[name] = {**metadata, "axis": axis}
+    return entries
 
 
 def _metadata_from_row(fields: dict[str, str], source: Source, line: int) -> Known:

@@ -99,10 +99,10 @@ def read_components(
     entry = format_by_name(format_name) if format_name is not None else recognised_format(source)
     try:
         return [_reading(entry, source, _read(entry, source, replace(request, every=True)))]
-    except EveryComponentError as found:
-        components = found.components
+    except EveryComponentError as error:
+        components = error.components
     results = [_read_or_error(entry, source, component) for component in components]
-    refused = [one for one in results if isinstance(one, RecordError)]
+    refused = [result for result in results if isinstance(result, RecordError)]
     if len(refused) == len(results):
         raise refused[0]
     return results
@@ -162,7 +162,7 @@ def to_motion(source: Source, record: Record) -> tuple[Motion, list[str]]:
         _in_si(source, record.samples, record.unit),
         None if record.vertical is None else _in_si(source, record.vertical, record.unit),
     )
-    return si, [words for one in doubts for words in one]
+    return si, [words for sentences in doubts for words in sentences]
 
 
 def _read(entry: Format, source: Source, request: Request) -> Record | StoredMotion:

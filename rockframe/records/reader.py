@@ -430,14 +430,16 @@ def choose_unit(
     >>> unit.factor, name, warnings
     (0.01, 'gal', [])
     """
-    known = None if name is None else acceleration_unit(name)
-    if name is not None and known is None:
-        other = other_quantity(name)
-        if other is not None:
-            raise source.refuse(found=f"{other} in {name}", expected="an acceleration", line=line)
+    stated = None if name is None else acceleration_unit(name)
+    if name is not None and stated is None:
+        quantity = other_quantity(name)
+        if quantity is not None:
+            raise source.refuse(
+                found=f"{quantity} in {name}", expected="an acceleration", line=line
+            )
     if request.unit is not None and request.unit_name is not None:
         warnings: list[str] = []
-        if known is not None and not math.isclose(known.factor, request.unit.factor):
+        if stated is not None and not math.isclose(stated.factor, request.unit.factor):
             where = source.path if line is None else f"{source.path}, line {line}"
             warnings.append(
                 f"{where}: the unit of the file is {name!r}, but "
@@ -449,7 +451,7 @@ def choose_unit(
             found="no unit of the samples",
             expected="a unit in the header, or the argument unit, for example unit='g'",
         )
-    if known is None:
+    if stated is None:
         expected = "an acceleration unit such as g, gal, cm/s^2 or m/s^2 (or the argument unit)"
         raise source.refuse(found=f"the unknown unit {name!r}", expected=expected, line=line)
-    return known, name, []
+    return stated, name, []

@@ -166,10 +166,10 @@ def _stated_peak(reals: Fields) -> list[StatedValue]:
     """Return the larger of the peaks in reals 30 and 32."""
     printed = [reals.cell(place) for place in _PEAKS]
     stated = [abs(float(with_exponent_e(text))) for text in printed if ONE_NUMBER.fullmatch(text)]
-    known = [value for value in stated if value < _UNKNOWN_REAL / 10.0]
-    if len(known) < len(_PEAKS):
+    peaks = [value for value in stated if value < _UNKNOWN_REAL / 10.0]
+    if len(peaks) < len(_PEAKS):
         return []
-    return [StatedValue(f"{max(known):.9g}", UNIT, reals.line(_PEAKS[0]))]
+    return [StatedValue(f"{max(peaks):.9g}", UNIT, reals.line(_PEAKS[0]))]
 
 
 def _time_step(source: Source, request: Request, reals: Fields) -> float:

@@ -135,8 +135,8 @@ def _read(source: Source, request: Request) -> Record:
 def _row_by_row(source: Source, request: Request, table: Table, metadata: Metadata) -> Record:
     """Read a record that has several values in each line."""
     columns = table.values.shape[1]
-    rest = [required_number(field, source, table.lines[-1]) for field in table.rest]
-    values = np.append(table.values.ravel(), rest)
+    last_values = [required_number(field, source, table.lines[-1]) for field in table.rest]
+    values = np.append(table.values.ravel(), last_values)
     if values.size > MAXIMUM_SAMPLES:
         raise too_many_samples_error(source, values.size, line=table.lines[-1])
     words = f"{values.size} samples, {columns} to a line"

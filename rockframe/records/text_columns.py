@@ -83,11 +83,11 @@ def read_table(source: Source, most_columns: int) -> Table:
         rows = [text.replace(",", ".") for text in rows]
     plain = is_plain_number_text(body)
     del body
-    rest = _split(rows[-1], separator)
-    if len(rest) < columns and len(rows) > 1:
+    last_row = _split(rows[-1], separator)
+    if len(last_row) < columns and len(rows) > 1:
         rows = rows[:-1]
     else:
-        rest = []
+        last_row = []
     fields = _fields(source, rows, lines, separator, columns)
     values = floats_or_none(fields) if plain else None
     if values is None:
@@ -103,7 +103,7 @@ def read_table(source: Source, most_columns: int) -> Table:
         lines,
         header,
         separator,
-        rest,
+        last_row,
     )
 
 
@@ -120,8 +120,12 @@ def interruption_warnings(source: Source, table: Table) -> list[str]:
     if not places.size:
         return []
     line = table.lines[int(places[0])] + 1
-    found = next((text for text in source.lines[line - 1 : line + 2] if text.strip()), "")
-    what = quoted_first_line(found) if found.lstrip().startswith(COMMENT_MARKS) else "a blank line"
+    interruption = next((text for text in source.lines[line - 1 : line + 2] if text.strip()), "")
+    what = (
+        quoted_first_line(interruption)
+        if interruption.lstrip().startswith(COMMENT_MARKS)
+        else "a blank line"
+    )
     return [
         f"{source.path}, line {line}: {what} among the numbers, in {places.size} places; the "
         "numbers before and after it are read as one record"

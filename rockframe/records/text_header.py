@@ -64,8 +64,8 @@ def column_names(source: Source, table: Table) -> tuple[list[str], int]:
             found=f"the column {quoted_first_line(last)}", expected="an acceleration", line=line
         )
     if columns == 2 and (_ACCELERATION_NAME.match(names[0]) or _TIME_NAME.match(last)):
-        both = all(map(is_direction, names))
-        if not both or _TIME_NAME.match(last):
+        are_directions = all(map(is_direction, names))
+        if not are_directions or _TIME_NAME.match(last):
             found = f"the columns {names[0]!r}, {last!r}"
             expected = "the time first, then the acceleration"
             raise source.refuse(found=found, expected=expected, line=line)
@@ -152,29 +152,33 @@ def acceleration_columns(
     plain_names = [_BRACKETED.sub("", name).strip() or name for name in names]
     # next to an "a" they are velocity and displacement, not directions
     letters = _BESIDE_A if "a" in map(str.casefold, plain_names) else ()
-    found: list[TextColumn] = []
+    accelerations: list[TextColumn] = []
     stated: dict[int, str | None] = {}
     for place in places:
-        own = [*in_brackets(names[place])[-1:], *units[place : place + 1]]
+        candidates = [*in_brackets(names[place])[-1:], *units[place : place + 1]]
         plain = plain_names[place]
-        if _IN_TIME.match(plain) or any(unit.casefold() in TIME_UNITS for unit in own):
+        if _IN_TIME.match(plain) or any(unit.casefold() in TIME_UNITS for unit in candidates):
             if timed:
                 continue
             found_name = f"the times {names[place]!r} after another column"
             expected = "the times in the first column"
             raise source.refuse(found=found_name, expected=expected, line=line)
-        if _is_other(names[place]) or any(map(other_quantity, own)) or plain.casefold() in letters:
+        if (
+            _is_other(names[place])
+            or any(map(other_quantity, candidates))
+            or plain.casefold() in letters
+        ):
             continue
-        known = next((unit for unit in own if acceleration_unit(unit) is not None), None)
-        found.append(TextColumn(place, plain, _direction(plain), known))
-        stated[place] = known or next(iter(in_brackets(names[place])[-1:]), None)
-    if not found:
+        unit_name = next((unit for unit in candidates if acceleration_unit(unit) is not None), None)
+        accelerations.append(TextColumn(place, plain, _direction(plain), unit_name))
+        stated[place] = unit_name or next(iter(in_brackets(names[place])[-1:]), None)
+    if not accelerations:
         names_found = ", ".join(names[:6])
         raise source.refuse(found=f"the columns {names_found}", expected="accelerations", line=line)
-    if any(column.unit is not None for column in found):
+    if any(column.unit is not None for column in accelerations):
         # the unit of another column is not that of one whose own is unknown
-        return [replace(column, unit=stated[column.place]) for column in found]
-    return found
+        return [replace(column, unit=stated[column.place]) for column in accelerations]
+    return accelerations
 
 
 def _unit_row(table: Table, columns: int) -> list[str]:
@@ -209,18 +213,18 @@ def unit_of_header(
 ) -> tuple[str | None, int | None]:
     """Find the unit of the accelerations in the header."""
     unknown: tuple[str, int] | None = None
-    known: list[tuple[str, int, float]] = []
+    units: list[tuple[str, int, float]] = []
     for line, name, certain in _unit_candidates(table):
         unit = acceleration_unit(name)
         if unit is not None:
-            known.append((name, line, unit.factor))
-        elif certain and name.casefold() not in TIME_UNITS and not known:
+            units.append((name, line, unit.factor))
+        elif certain and name.casefold() not in TIME_UNITS and not units:
             if other_quantity(name) is not None or _LIKE_UNIT.fullmatch(name):
                 return name, line  # not that of a line farther from the numbers
             unknown = unknown or (name, line)
-    if known:
-        name, line, factor = known[0]
-        differing = [entry for entry in known if not math.isclose(entry[2], factor)]
+    if units:
+        name, line, factor = units[0]
+        differing = [entry for entry in units if not math.isclose(entry[2], factor)]
         if differing and not requested:
             found = f"the units {name!r} and {differing[0][0]!r} (line {differing[0][1]})"
             raise source.refuse(found=found, expected="one unit, or the argument unit", line=line)
@@ -256,16 +260,16 @@ def _is_other(name: str) -> bool:
 
 def _direction(name: str) -> Orientation:
     plain = _BRACKETED.sub("", name).strip()
-    whole = orientation_of(plain)
-    if whole != UNKNOWN:
-        return whole
+    orientation = orientation_of(plain)
+    if orientation != UNKNOWN:
+        return orientation
     words = _WORDS.findall(plain)
     return orientation_of(words[-1]) if len(words) > 1 else UNKNOWN
 
 
 def _is_unit(name: str) -> bool:
-    known = acceleration_unit(name) is not None or other_quantity(name) is not None
-    return known or name.casefold() in TIME_UNITS
+    is_quantity = acceleration_unit(name) is not None or other_quantity(name) is not None
+    return is_quantity or name.casefold() in TIME_UNITS
 
 
 TIME_UNITS: Final = {

@@ -86,7 +86,7 @@ def normalised(name: str) -> str:
     text = re.sub(r"^[µμ]m", "um", text)
     short = {"centi": "cm", "milli": "mm", "micro": "um", "nano": "nm", None: "m"}
     spelt_out = r"^(centi|milli|micro|nano)?met(?:er|re)s?(?=/|s|$)"
-    return re.sub(spelt_out, lambda found: short[found[1]], text)
+    return re.sub(spelt_out, lambda match: short[match[1]], text)
 
 
 def acceleration_unit(name: str) -> RecordUnit | None:
@@ -102,9 +102,9 @@ def other_quantity(name: str) -> str | None:
 def argument_unit(unit: object, *, owner: str) -> RecordUnit:
     """Read the ``unit=`` argument for a record file."""
     text = str(unit)
-    known = acceleration_unit(text)
-    if known is not None:
-        return known
+    parsed = acceleration_unit(text)
+    if parsed is not None:
+        return parsed
     msg = (
         f"{owner}: unit needs the unit of an acceleration, got {short_repr(text)}; "
         "write for example unit='g', unit='cm/s^2' or unit='m/s^2'"

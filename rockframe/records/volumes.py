@@ -161,10 +161,10 @@ def _geonet_count(block: _Block) -> int:
 
 
 def _geonet_component(request: Request, block: _Block, count: int) -> FileComponent:
-    found = first_match(_GEONET_NAME, block.text, block.index + 1)
+    match_and_line = first_match(_GEONET_NAME, block.text, block.index + 1)
     name, direction, line = "", UNKNOWN, block.index + 13
-    if found is not None:
-        match, line = found
+    if match_and_line is not None:
+        match, line = match_and_line
         name, direction = match[1], orientation_of(match[1])
         if direction == UNKNOWN and "vertical" in match.string.casefold():
             direction = Orientation(vertical=VERTICAL)
@@ -282,8 +282,8 @@ def _read_bhrc(source: Source, request: Request) -> Record:
 
 def _bhrc_component(source: Source, request: Request, first: int, end: int) -> FileComponent:
     text = source.top(_BHRC_TEXT, first)
-    found, line = required_match(source, _BHRC_NAME, text, "COMP L1", first + 1)
-    name = found[1]
+    match, line = required_match(source, _BHRC_NAME, text, "COMP L1", first + 1)
+    name = match[1]
     return FileComponent(
         name,
         lambda: _bhrc_samples(source, request, first, end, text),
@@ -319,8 +319,8 @@ def _bhrc_samples(
     count, data = int(points[1]), first + _BHRC_DATA_AT
     values = _BHRC_LAYOUT.read(source, data, count)
     metadata: Metadata = {"station": volume[2].split("/")[0], "unit_as_read": chosen[1]}
-    for one in text:
-        origin, station = _ORIGIN.match(one), _STATION.match(one)
+    for row in text:
+        origin, station = _ORIGIN.match(row), _STATION.match(row)
         if origin is not None:
             metadata["event_time"] = " ".join(origin[1].split())
             metadata["event"] = f"earthquake of {metadata['event_time']}"

@@ -96,10 +96,14 @@ def _split_columns(columns: Iterable[_Column]) -> list[list[_Column]]:
 def _verdict(dataset: xr.Dataset, place: int) -> str:
     """Return the verdict on a case, or the status of an unfinished run."""
     status = dataset["status"]
-    one = status.isel(dict.fromkeys(status.dims, 0)).copy()
-    one.values = status.to_numpy().ravel()[place]
-    if one.item() != RunStatus.COMPLETED:
-        return "overturned" if overturned_from_status(one.to_numpy()) == 1.0 else format_value(one)
+    of_case = status.isel(dict.fromkeys(status.dims, 0)).copy()
+    of_case.values = status.to_numpy().ravel()[place]
+    if of_case.item() != RunStatus.COMPLETED:
+        return (
+            "overturned"
+            if overturned_from_status(of_case.to_numpy()) == 1.0
+            else format_value(of_case)
+        )
     passed = dataset["overturned"].to_numpy().ravel()[place] == 1
     return "overturned" if passed else "did not overturn"
 
@@ -119,22 +123,24 @@ def _table(
         labels = [*label_texts(dataset, place, units).values()]
         if with_verdict:
             labels.append(_verdict(dataset, place))
-        numbers = [format_number(float(one.values[place]), one.unit, units) for one in columns]
+        numbers = [
+            format_number(float(column.values[place]), column.unit, units) for column in columns
+        ]
         rows.append([*labels, *numbers])
     blanks = [""] * (len(status.dims) - 1 + with_verdict)
     for words, function in _STATISTICS:
-        numbers = [_statistic(function, one, units) for one in columns]
+        numbers = [_statistic(function, column, units) for column in columns]
         rows.append([f"{words} of {status.size}", *blanks, *numbers])
     titles = [str(dim).replace("_", " ") for dim in status.dims]
     verdict = ["verdict"] if with_verdict else []
-    return page.number_table(rows, [*titles, *verdict, *(one.head for one in columns)])
+    return page.number_table(rows, [*titles, *verdict, *(column.head for column in columns)])
 
 
 def _statistic(function: Callable[..., Any], column: _Column, units: DisplayUnits) -> str:
     """Write a number of all cases, and of how many it is where some have none."""
-    known = column.values[~np.isnan(column.values)]
-    number = format_number(float(function(known)), column.unit, units)
-    return number if known.size == column.values.size else f"{number} (of {known.size})"
+    finite = column.values[~np.isnan(column.values)]
+    number = format_number(float(function(finite)), column.unit, units)
+    return number if finite.size == column.values.size else f"{number} (of {finite.size})"
 
 
 def _columns(dataset: xr.Dataset, names: Sequence[str], units: DisplayUnits) -> Iterator[_Column]:
@@ -143,20 +149,24 @@ def _columns(dataset: xr.Dataset, names: Sequence[str], units: DisplayUnits) -> 
     for name in names:
         if name not in dataset or not set(status.dims) & set(dataset[name].dims):
             continue
-        found, words = dataset[name], name
-        if TIME[0] in found.dims:
-            found, words = abs(found).max(TIME[0]), f"largest {name}"
-        others = [dim for dim in found.dims if dim not in status.dims]
+        array, words = dataset[name], name
+        if TIME[0] in array.dims:
+            array, words = abs(array).max(TIME[0]), f"largest {name}"
+        other_dims = [dim for dim in array.dims if dim not in status.dims]
         unit = str(dataset[name].attrs.get("units", Unit.ONE))
-        for one in found.stack(_other=others).transpose("_other", ...) if others else [found]:
-            values = one.drop_vars([*others, "_other"], errors="ignore").broadcast_like(status)
+        for series in (
+            array.stack(_other=other_dims).transpose("_other", ...) if other_dims else [array]
+        ):
+            values = series.drop_vars([*other_dims, "_other"], errors="ignore").broadcast_like(
+                status
+            )
             flat = values.transpose(*status.dims).to_numpy().astype(np.float64).ravel()
             if np.isfinite(flat).any():
                 whose = "".join(
-                    f" ({format_label(one[dim].item())})"
+                    f" ({format_label(series[dim].item())})"
                     if dim in dataset.coords
-                    else f" ({dim} {1 + one[dim].item()})"
-                    for dim in others
+                    else f" ({dim} {1 + series[dim].item()})"
+                    for dim in other_dims
                 )
                 yield _Column(column_title(f"{words}{whose}", unit, units), unit, flat)
 
@@ -171,16 +181,22 @@ def capacity_table(dataset: xr.Dataset, units: DisplayUnits) -> Iterator[str]:
     if capacity.size > MAX_ROWS:
         order = np.argsort(capacity.to_numpy().ravel(), kind="stable")[:MAX_ROWS]
         yield page.paragraph(f"The {order.size} least of {capacity.size} capacities.", kind="soft")
-    names = [one for one in _CAPACITY_VARIABLES if one in dataset]
-    flat = {one: dataset[one].broadcast_like(capacity).transpose(*capacity.dims) for one in names}
+    names = [variable for variable in _CAPACITY_VARIABLES if variable in dataset]
+    flat = {
+        variable: dataset[variable].broadcast_like(capacity).transpose(*capacity.dims)
+        for variable in names
+    }
     rows = list[list[str]]()
     for place in order.tolist():
         at = dict(zip(capacity.dims, np.unravel_index(place, capacity.shape), strict=True))
-        numbers = [format_value(flat[one].isel(at), units) for one in names]
+        numbers = [format_value(flat[variable].isel(at), units) for variable in names]
         rows.append([*label_texts(dataset, place, units, name).values(), *numbers])
-    heads = [str(one).replace("_", " ") for one in (*capacity.dims, *names)]
+    heads = [str(head).replace("_", " ") for head in (*capacity.dims, *names)]
     yield page.number_table(rows, heads)
-    meanings = [f"{one.replace('_', ' ')}: {dataset[one].attrs['long_name']}" for one in names]
+    meanings = [
+        f"{variable.replace('_', ' ')}: {dataset[variable].attrs['long_name']}"
+        for variable in names
+    ]
     yield page.paragraph(f"{'; '.join(meanings)}.", kind="soft")
 
 
@@ -205,12 +221,12 @@ def label_texts(
     dataset: xr.Dataset, place: int, units: DisplayUnits, of: str = "status"
 ) -> dict[str, str]:
     """Write the labels of a value, usually those of a case, numbers with their units."""
-    found: dict[str, str] = {}
+    texts: dict[str, str] = {}
     for name, value in label_values(dataset, place, of).items():
         unit = units.of(str(dataset[name].attrs.get("units", Unit.ONE)) if name in dataset else "1")
-        shown = value / unit.size if isinstance(value, float) else value
-        found[name] = f"{format_label(shown)}{unit_suffix(with_superscripts(unit.words))}"
-    return found
+        number = value / unit.size if isinstance(value, float) else value
+        texts[name] = f"{format_label(number)}{unit_suffix(with_superscripts(unit.words))}"
+    return texts
 
 
 def format_label(value: object) -> str:

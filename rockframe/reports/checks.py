@@ -164,31 +164,34 @@ class CodeCheck:
         ComponentError
             No number has this symbol.
         """
-        found = {one.symbol: one.value for several in self.lines.values() for one in several}
-        return found[checked_name(symbol, found, owner="CodeCheck.value", name="symbol")]
+        numbers = {line.symbol: line.value for several in self.lines.values() for line in several}
+        return numbers[checked_name(symbol, numbers, owner="CodeCheck.value", name="symbol")]
 
     @property
     def passed(self) -> dict[str, bool]:
         """Whether each check is satisfied, by its title."""
-        return {one.title: one.passed for one in self.verdicts}
+        return {verdict.title: verdict.passed for verdict in self.verdicts}
 
     def __str__(self) -> str:
         text = [f"{self.title} ({self.code})"]
         for title, several in self.lines.items():
             text.append(f"{title}:")
-            wide = max(len(one.symbol) for one in several)
+            wide = max(len(line.symbol) for line in several)
             text += [
-                f"  {one.symbol:<{wide}}  {one.written():<16}  {one.words} [{one.source}]"
-                for one in several
+                f"  {line.symbol:<{wide}}  {line.written():<16}  {line.words} [{line.source}]"
+                for line in several
             ]
         text += [
-            f"{one.title}: {_OUTCOMES[one.passed][0]}; {one.words} [{one.source}]"
-            for one in self.verdicts
+            f"{verdict.title}: {_OUTCOMES[verdict.passed][0]}; {verdict.words} [{verdict.source}]"
+            for verdict in self.verdicts
         ]
-        return "\n".join([*text, *(f"Left out: {one}" for one in self.notes)])
+        return "\n".join([*text, *(f"Left out: {note}" for note in self.notes)])
 
     def _repr_html_(self) -> str:
-        rows = {one.title: f"{_OUTCOMES[one.passed][0]}; {one.words}" for one in self.verdicts}
+        rows = {
+            verdict.title: f"{_OUTCOMES[verdict.passed][0]}; {verdict.words}"
+            for verdict in self.verdicts
+        }
         return html_summary(escape(self.title), rows)
 
     def banners(self, units: DisplayUnits) -> Iterator[str]:
@@ -204,10 +207,10 @@ class CodeCheck:
         str
             HTML.
         """
-        for one in self.verdicts:
-            text, kind = _OUTCOMES[one.passed]
-            words = f"{units.convert_text(one.words)} [{one.source}]. {self.code}."
-            yield page.banner(f"{one.title}: {text}", words, kind)
+        for verdict in self.verdicts:
+            text, kind = _OUTCOMES[verdict.passed]
+            words = f"{units.convert_text(verdict.words)} [{verdict.source}]. {self.code}."
+            yield page.banner(f"{verdict.title}: {text}", words, kind)
 
     def tables(self, units: DisplayUnits) -> Iterator[tuple[str, list[str]]]:
         """Return titles and tables of the numbers, and of what is neglected, as pages show them.
@@ -226,12 +229,12 @@ class CodeCheck:
         for title, several in self.lines.items():
             cells = [
                 (
-                    one.symbol,
-                    with_superscripts(one.written(units)),
-                    units.convert_text(one.words),
-                    one.source,
+                    line.symbol,
+                    with_superscripts(line.written(units)),
+                    units.convert_text(line.words),
+                    line.source,
                 )
-                for one in several
+                for line in several
             ]
             yield title, [page.parameter_table(cells, head=head)]
         if self.notes:
@@ -305,12 +308,12 @@ def read_checks(value: object, owner: str) -> list[CodeCheck]:
             f"{owner}: checks must be of rf.codes, one or a list of them, got {short_repr(several)}"
         )
         raise ComponentError(msg)
-    found = list(cast("Iterable[object]", several))
-    for one in found:
-        if not isinstance(one, CodeCheck):
+    checks = list(cast("Iterable[object]", several))
+    for check in checks:
+        if not isinstance(check, CodeCheck):
             msg = (
                 f"{owner}: checks must be of rf.codes, such as circolare_2019, got "
-                f"{short_repr(one)}"
+                f"{short_repr(check)}"
             )
             raise ComponentError(msg)
-    return cast("list[CodeCheck]", found)
+    return cast("list[CodeCheck]", checks)

@@ -122,5 +122,5 @@ def model_limits(parts: Parts | None, *, slides: bool = False) -> list[Limit]:
 
     Equations in which the block slides include its flight, too.
     """
-    found = [one for one in LIMITS if parts is None or one.applies_to(parts)]
-    return [one for one in found if not (slides and one.title in (SLIDING, FLIGHT))]
+    limits = [limit for limit in LIMITS if parts is None or limit.applies_to(parts)]
+    return [limit for limit in limits if not (slides and limit.title in (SLIDING, FLIGHT))]

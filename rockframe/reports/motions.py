@@ -48,7 +48,7 @@ class TargetComparison:
     @property
     def period_range(self) -> tuple[str, str]:
         """The shortest and the longest period."""
-        first, last = (f"{one!r} {Unit.SECOND}" for one in self.periods[[0, -1]].tolist())
+        first, last = (f"{period!r} {Unit.SECOND}" for period in self.periods[[0, -1]].tolist())
         return first, last
 
 
@@ -79,14 +79,18 @@ def available_motions(dataset: xr.Dataset, value: object, owner: str) -> dict[st
     named = _read_motions(value, owner)
     if "motions_json" not in dataset.attrs:
         return named
-    found = known_motions(dataset, value)
-    digests = {str(one.get("sha256")) for one in json.loads(dataset.attrs["motions_json"]) if one}
-    digests_of_motions = {motion.sha256 for motion in found.values()} | digests
+    available = known_motions(dataset, value)
+    digests = {
+        str(description.get("sha256"))
+        for description in json.loads(dataset.attrs["motions_json"])
+        if description
+    }
+    digests_of_motions = {motion.sha256 for motion in available.values()} | digests
     unknown = [label for label, motion in named.items() if motion.sha256 not in digests_of_motions]
     if unknown:
         msg = f"{owner}: the study has no motion with the samples of {unknown[0]!r}"
         raise ComponentError(msg)
-    return found
+    return available
 
 
 def _read_motions(value: object, owner: str) -> dict[str, GroundMotion]:
@@ -152,25 +156,27 @@ def _record_table(
     motions: Mapping[str, GroundMotion], misfits: Numbers | None, units: DisplayUnits
 ) -> str:
     """Return a table with a row for each motion, with what is known of its record."""
-    known = {
+    columns = {
         name: values for name in RECORD_COLUMNS
-        if not all(map(is_missing, values := [column_value(name, one) for one in motions.values()]))
+        if not all(
+            map(is_missing, values := [column_value(name, motion) for motion in motions.values()])
+        )
     }  # fmt: skip
     if misfits is not None:
-        known["spectral_misfit"] = misfits.tolist()
+        columns["spectral_misfit"] = misfits.tolist()
     rows = [
-        [label, *(_cell(name, values[place], units) for name, values in known.items())]
+        [label, *(_cell(name, values[place], units) for name, values in columns.items())]
         for place, label in enumerate(motions)
     ]
-    return page.number_table(rows, ["motion", *(_column_title(name, units) for name in known)])
+    return page.number_table(rows, ["motion", *(_column_title(name, units) for name in columns)])
 
 
 def record_rows(motion: GroundMotion, units: DisplayUnits) -> list[tuple[str, str]]:
     """Return what is known of the record of a motion, without its peak."""
-    found = ((name, column_value(name, motion)) for name in RECORD_COLUMNS[:-1])
+    columns = ((name, column_value(name, motion)) for name in RECORD_COLUMNS[:-1])
     return [
         (_column_title(name, units), _cell(name, value, units))
-        for name, value in found
+        for name, value in columns
         if not is_missing(value)
     ]
 

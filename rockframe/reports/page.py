@@ -148,8 +148,8 @@ def number_table(values: Iterable[Sequence[str]], head: Sequence[str]) -> str:
 def numbered_list(values: Iterable[str | tuple[str, str]]) -> str:
     """Return a numbered list; of pairs, the first is a title."""
     inner = list[str]()
-    for one in values:
-        title, words = ("", one) if isinstance(one, str) else one
+    for item in values:
+        title, words = ("", item) if isinstance(item, str) else item
         strong = f"<strong>{escape(title)}.</strong> " if title else ""
         inner.append(f"<li>{strong}{escape(words)}</li>")
     return "<ol>\n" + "\n".join(inner) + "\n</ol>"

@@ -76,7 +76,7 @@ def read_project(value: object, owner: str) -> Project:
             msg = f"{owner}: project has no entry {called}; known are {', '.join(known)}"
             raise ComponentError(msg)
     assumptions, checks = (
-        _read_texts(values.get(one, ()), one, owner) for one in (ASSUMPTIONS, CHECKS)
+        _read_texts(values.get(entry, ()), entry, owner) for entry in (ASSUMPTIONS, CHECKS)
     )
     return Project(
         tuple((title, _read_text(values[name], name, owner)) for name, title in ENTRIES.items()
@@ -97,7 +97,7 @@ def _read_texts(value: object, name: str, owner: str) -> tuple[str, ...]:
     if not isinstance(value, list | tuple):
         msg = f"{owner}: {name} must be a list of texts, got {short_repr(value)}"
         raise ComponentError(msg)
-    return tuple(_read_text(one, name, owner) for one in value)
+    return tuple(_read_text(text, name, owner) for text in value)
 
 
 def _read_text(value: object, name: str, owner: str) -> str:

@@ -125,7 +125,7 @@ def scene_section(dataset: xr.Dataset, system: System | None, units: DisplayUnit
 
 def motion_section(
     dataset: xr.Dataset,
-    found: GroundMotion | None,
+    motion: GroundMotion | None,
     units: DisplayUnits,
     comparison: TargetComparison | None = None,
 ) -> Iterator[str]:
@@ -133,20 +133,20 @@ def motion_section(
     attributes = dict(dataset.attrs)
     if "motion" in attributes:
         attributes["motion"] = motion_words(attributes)
-    known = (
+    entries = (
         ("motion", "name"),
         ("motion_history", "made from"),
         ("motion_samples", "samples"),
         ("motion_time_step", "time step [s]"),
         ("motion_sha256", "digest (SHA-256)"),
     )
-    pairs = [(words, str(attributes[name])) for name, words in known if name in attributes]
-    yield page.parameter_table([*pairs, *([] if found is None else record_rows(found, units))])
-    if found is None:
+    pairs = [(words, str(attributes[name])) for name, words in entries if name in attributes]
+    yield page.parameter_table([*pairs, *([] if motion is None else record_rows(motion, units))])
+    if motion is None:
         return
-    has_vertical = found.si.vertical is not None  # of which nothing is shown
+    has_vertical = motion.si.vertical is not None  # of which nothing is shown
     yield page.subtitle(f"Measures{' of the horizontal component' * has_vertical}")
-    measures = intensity_measures(found)
+    measures = intensity_measures(motion)
     threshold = to_si(measures.attrs["threshold"], ACCELERATION, owner="", name="")
     in_words = format_value(xr.DataArray(threshold, attrs={"units": str(ACCELERATION.unit)}), units)
     yield page.parameter_table(
@@ -154,13 +154,13 @@ def motion_section(
         for words, value in scalar_rows(measures, units=units)
     )
     yield page.captioned_figure(
-        plot.spectra(found, units=units.words),
+        plot.spectra(motion, units=units.words),
         f"History of the {'horizontal ' * has_vertical}ground acceleration, its response spectra "
         "at 5 % damping and its Fourier spectrum.",
     )
     if comparison is not None:
         yield page.subtitle("Spectrum and target")
-        yield from spectra_section({found.name: found}, comparison, units)
+        yield from spectra_section({motion.name: motion}, comparison, units)
 
 
 def response_section(dataset: xr.Dataset, units: DisplayUnits) -> Iterator[str]:
@@ -207,13 +207,13 @@ def limits_section(
     parts = None if system is None else system.parts
     slides = system is not None and system.setting.slides
     left_out = [
-        (one.title, one.study_meaning if study and one.study_meaning else one.meaning)
-        for one in model_limits(parts, slides=slides)
+        (limit.title, limit.study_meaning if study and limit.study_meaning else limit.meaning)
+        for limit in model_limits(parts, slides=slides)
     ]
-    known = WITH_CERTIFICATE if "certificate" in dataset.attrs else WITHOUT_CERTIFICATE
+    study_or_run = WITH_CERTIFICATE if "certificate" in dataset.attrs else WITHOUT_CERTIFICATE
     *general, sensitive = GENERAL
     if "proof" not in dataset.attrs:  # the proof says that of its own verdict
-        sensitive = f"{sensitive} {STUDY_WITHOUT_CERTIFICATE if study else known}"
+        sensitive = f"{sensitive} {STUDY_WITHOUT_CERTIFICATE if study else study_or_run}"
     if assumptions:
         yield page.subtitle("Assumptions")
         yield page.numbered_list(assumptions)
@@ -226,9 +226,9 @@ def provenance_section(dataset: xr.Dataset, file: str) -> Iterator[str]:
     attributes = dataset.attrs
     pairs = [(words, str(attributes[name])) for name, words in _PROVENANCE if name in attributes]
     versions = ", ".join(f"{name} {version(name)}" for name in _LIBRARIES)
-    here = f"rockframe {__version__}, Python {python_version()}, {versions}"
+    environment = f"rockframe {__version__}, Python {python_version()}, {versions}"
     yield page.parameter_table(
-        [*([("file", file)] if file else []), *pairs, ("page written by", here)]
+        [*([("file", file)] if file else []), *pairs, ("page written by", environment)]
     )
     for name, words in (("system_json", "System"), ("run_json", "Run")):
         if name in attributes:
@@ -255,16 +255,16 @@ def _part_tables(title: str, part: Component, units: DisplayUnits) -> Iterator[s
             yield from _part_tables(
                 f"{name.capitalize()}: {value['type']}", component_from_dict(value), units
             )
-        for number, one in enumerate(_inner_parts(value), 1):
+        for number, inner_part in enumerate(_inner_parts(value), 1):
             which = {"bodies": "Body"}.get(name, name.removesuffix("s").capitalize())
             yield from _part_tables(
-                f"{which} {number}: {one['type']}", component_from_dict(one), units
+                f"{which} {number}: {inner_part['type']}", component_from_dict(inner_part), units
             )
 
 
 def _inner_parts(value: object) -> list[Any]:
     """Return the descriptions of parts in an argument of a part."""
-    return [one for one in value if isinstance(one, dict)] if isinstance(value, list) else []
+    return [item for item in value if isinstance(item, dict)] if isinstance(value, list) else []
 
 
 def _parameter_rows(part: Component, units: DisplayUnits) -> list[tuple[str, str, str]]:
@@ -281,15 +281,17 @@ def _parameter_rows(part: Component, units: DisplayUnits) -> list[tuple[str, str
     ]
 
 
-def _meaning(one: Declared[Any, Any]) -> str:
-    words = one.words.split(" [")[0].rstrip(".")
-    return words if one.condition is None else words.removesuffix(f"; {one.condition.words}")
+def _meaning(argument: Declared[Any, Any]) -> str:
+    words = argument.words.split(" [")[0].rstrip(".")
+    return (
+        words if argument.condition is None else words.removesuffix(f"; {argument.condition.words}")
+    )
 
 
 def _format_value(value: object, units: DisplayUnits) -> str:
     """Write a number with its unit, in six digits; the numbers of a list with commas."""
     if isinstance(value, list):
-        return ", ".join(_format_value(one, units) for one in value)
+        return ", ".join(_format_value(item, units) for item in value)
     number, blank, unit = units.convert_text(str(value)).partition(" ")
     try:
         return f"{float(number):.6g}{blank}{with_superscripts(unit)}"

@@ -75,21 +75,21 @@ def worst_case(
     try:
         with warnings.catch_warnings():
             warnings.simplefilter("ignore", RockframeWarning)  # the dataset has them
-            found = case(dataset, motions=motions or None, **labels)
-            run = found.simulate(outputs=())
+            worst = case(dataset, motions=motions or None, **labels)
+            run = worst.simulate(outputs=())
     except RockframeError as problem:  # such as without its motions
         reason = str(problem).replace(NOT_GIVEN, f"{NOT_GIVEN} or, in a shell, by --motions")
         return f"Not simulated again; {reason}.", None
     shown_as = label_texts(dataset, place, units)
     named = ", ".join(f"{name.replace('_', ' ')} {reason}" for name, reason in shown_as.items())
-    system = found.system if found.motion is None else with_motion(found.system, found.motion)
+    system = worst.system if worst.motion is None else with_motion(worst.system, worst.motion)
     return f"Simulated again: {named}." if named else "Simulated again.", (run, system)
 
 
 def varied_parameters_sentence(dataset: xr.Dataset) -> str:
     """Write which values of the scene differ among the cases; an empty text if none do."""
     axes: list[dict[str, str]] = json.loads(str(dataset.attrs.get("axes_json", "[]")))
-    names = [one["name"].replace("_", " ") for one in axes if one["changes"] != Changes.MOTION]
+    names = [axis["name"].replace("_", " ") for axis in axes if axis["changes"] != Changes.MOTION]
     if not names:
         return ""
     return f"Values of the scene from which the cases differ in: {', '.join(names)}."
@@ -102,10 +102,10 @@ def simulated_case(dataset: xr.Dataset, motions: Any) -> xr.Dataset:
     except (SchemaError, StudyError):
         if motions is not None:
             raise
-    own = system_of_case(dataset, owner="report").assembly.json
-    found = dataset.assign_attrs(system_json=own, verdict=cases_verdict(dataset))
-    del found.attrs["axes_json"]  # it is a run of its own now
-    return found
+    system = system_of_case(dataset, owner="report").assembly.json
+    single = dataset.assign_attrs(system_json=system, verdict=cases_verdict(dataset))
+    del single.attrs["axes_json"]  # it is a run of its own now
+    return single
 
 
 def with_motion(system: System, motion: GroundMotion) -> System:
@@ -130,11 +130,11 @@ def _capacity_fit(dataset: xr.Dataset) -> str:
     try:
         with warnings.catch_warnings():
             warnings.simplefilter("ignore", RockframeWarning)  # on what the sentence says, too
-            found = fragility(dataset, str(measure), trials="capacities")
+            fit = fragility(dataset, str(measure), trials="capacities")
     except RockframeError:  # such as of a part of an analysis
         return ""
-    fitted = (found["fragility_status"] == FragilityStatus.FITTED).any()
-    return str(found.attrs["verdict"]) if fitted else ""
+    fitted = (fit["fragility_status"] == FragilityStatus.FITTED).any()
+    return str(fit.attrs["verdict"]) if fitted else ""
 
 
 def _is_sweep(dataset: xr.Dataset) -> bool:
@@ -182,5 +182,5 @@ def _limit_state_tables(dataset: xr.Dataset, units: DisplayUnits) -> list[str]:
             words = str(values.attrs.get("long_name", name))
             rows.append([words, *(format_value(values.isel({dim: k}), units)
                                   for k in range(dataset.sizes[dim]))])  # fmt: skip
-    heads = [units.convert_text(str(one)) for one in dataset[dim].to_numpy()]
+    heads = [units.convert_text(str(label)) for label in dataset[dim].to_numpy()]
     return [page.number_table(rows, ["", *heads])]

@@ -65,7 +65,7 @@ def extreme_rows(
     dataset: xr.Dataset, names: Iterable[str], units: DisplayUnits
 ) -> list[tuple[str, str, str, str]]:
     """Return the name, unit, least and largest value of histories, at each of several points."""
-    found = list[tuple[str, str, str, str]]()
+    rows = list[tuple[str, str, str, str]]()
     for name in names:
         values = dataset[name]
         unit = units.of(str(values.attrs.get("units", Unit.ONE)))
@@ -73,7 +73,7 @@ def extreme_rows(
         for row in values if values.ndim > 1 else [values]:
             of_point = f" ({row[first].item()})" if values.ndim > 1 and first in row.coords else ""
             ends = unit.of([float(row.min()), float(row.max())])
-            least, greatest = (f"{one + 0.0:.4g}" for one in ends)
+            least, greatest = (f"{end + 0.0:.4g}" for end in ends)
             words = "" if unit.words == Unit.ONE else with_superscripts(unit.words)
-            found.append((name.replace("_", " ") + of_point, words, least, greatest))
-    return found
+            rows.append((name.replace("_", " ") + of_point, words, least, greatest))
+    return rows

@@ -155,7 +155,7 @@ def report(
     chosen = display_units(units, owner=_OWNER)
     comparison = read_target(target, motions, _OWNER)
     checked = read_checks(checks, _OWNER)
-    by_codes = [banner for one in checked for banner in one.banners(chosen)]
+    by_codes = [banner for check in checked for banner in check.banners(chosen)]
     by_codes = by_codes or [*about.missing_checks_banner()]
     source = str(dataset.encoding.get("source", ""))
     read = [source] if source else []
@@ -182,16 +182,16 @@ def report(
         body += _run_sections(dataset, system, about, chosen, comparison)
     else:
         heading = value or str(dataset.attrs.get("title", "Study"))
-        found = available_motions(dataset, motions, _OWNER)
-        _warn_of_unused_target(target, found, "motions")
+        available = available_motions(dataset, motions, _OWNER)
+        _warn_of_unused_target(target, available, "motions")
         body = [*studies.verdict_sections(dataset, about, chosen, by_codes)]
-        if found:
-            spectra = spectra_section(found, comparison, chosen)
+        if available:
+            spectra = spectra_section(available, comparison, chosen)
             body.append(page.section("Ground motions", spectra))
-        body += _study_sections(dataset, found, about, chosen)
-    body += [one.section(chosen) for one in checked]
+        body += _study_sections(dataset, available, about, chosen)
+    body += [check.section(chosen) for check in checked]
     made = str(dataset.attrs.get("history", "")).splitlines()[-1:]
-    head = [f"<h1>{escape(heading)}</h1>", *(page.paragraph(one, kind="soft") for one in made)]
+    head = [f"<h1>{escape(heading)}</h1>", *(page.paragraph(text, kind="soft") for text in made)]
     file = Path(source).name
     content = [
         "\n".join(["<header>", *head, "</header>"]),
@@ -203,9 +203,9 @@ def report(
     return write_file(path, page.FILE_KIND, written, overwrite=overwrite, read=read)
 
 
-def _warn_of_unused_target(target: object, found: object, name: str) -> None:
+def _warn_of_unused_target(target: object, available: object, name: str) -> None:
     """Warn of a target without spectra to compare, since no motion is available."""
-    if target is not None and not found:
+    if target is not None and not available:
         msg = f"{_OWNER}: no motion is available to compare with the target; pass it by {name}="
         warn(msg, RockframeWarning)
 
@@ -265,8 +265,8 @@ def _check_dataset(dataset: xr.Dataset) -> None:
 def _is_run(dataset: xr.Dataset) -> bool:
     """Whether a dataset is the result of one run."""
     needed = ("overturned", "status", "peak_rotation")
-    known = "model" in dataset.attrs or "axes_json" in dataset.attrs  # a case of a sweep
-    return known and all(name in dataset and not dataset[name].dims for name in needed)
+    described = "model" in dataset.attrs or "axes_json" in dataset.attrs  # a case of a sweep
+    return described and all(name in dataset and not dataset[name].dims for name in needed)
 
 
 def _system_of(dataset: xr.Dataset, motion: GroundMotion | None) -> System | None:
@@ -274,11 +274,11 @@ def _system_of(dataset: xr.Dataset, motion: GroundMotion | None) -> System | Non
     try:
         with warnings.catch_warnings():
             warnings.simplefilter("ignore", RecordWarning)  # the page mentions them
-            found = System.from_dataset(dataset)
+            system = System.from_dataset(dataset)
     except SchemaError:
         return None
     if motion is None:
-        return found
+        return system
     digest = dataset.attrs.get("motion_sha256", motion.sha256)
     if digest != motion.sha256 or dataset.attrs.get("motion") == "none":
         msg = (
@@ -286,7 +286,7 @@ def _system_of(dataset: xr.Dataset, motion: GroundMotion | None) -> System | Non
             f"({dataset.attrs.get('motion')}); expected the motion of the run"
         )
         raise SchemaError(msg)
-    return studies.with_motion(found, motion)
+    return studies.with_motion(system, motion)
 
 
 _SAME_OUTCOME: Final = 1e-3
@@ -307,21 +307,21 @@ def _with_certificate(dataset: xr.Dataset, system: System | None) -> tuple[xr.Da
     try:
         with warnings.catch_warnings():
             warnings.simplefilter("ignore", RockframeWarning)  # the dataset has them
-            again = system.simulate(**arguments_of_run(dataset), outputs=None, certify=True)
+            repeated = system.simulate(**arguments_of_run(dataset), outputs=None, certify=True)
     except RockframeError as problem:
         return dataset, f"{problem}."
-    if verdict_of(again) != verdict_of(dataset) or not _same_outcome(again, dataset):
+    if verdict_of(repeated) != verdict_of(dataset) or not _same_outcome(repeated, dataset):
         return dataset, "a repeated run differs; another version or machine made the result."
-    found = {
-        name: value for name, value in again.attrs.items() if str(name).startswith("certificate")
+    certificate = {
+        name: value for name, value in repeated.attrs.items() if str(name).startswith("certificate")
     }
-    names = [row.name for row in CERTIFICATE if row.name in again]
-    return dataset.assign({name: again[name] for name in names}).assign_attrs(found), ""
+    names = [row.name for row in CERTIFICATE if row.name in repeated]
+    return dataset.assign({name: repeated[name] for name in names}).assign_attrs(certificate), ""
 
 
-def _same_outcome(one: xr.Dataset, other: xr.Dataset) -> bool:
+def _same_outcome(run: xr.Dataset, repeated: xr.Dataset) -> bool:
     """Whether peaks and times of overturning are equal but for rounding."""
     return all(
-        np.isclose(one[name], other[name], rtol=_SAME_OUTCOME, atol=0.0, equal_nan=True)
+        np.isclose(run[name], repeated[name], rtol=_SAME_OUTCOME, atol=0.0, equal_nan=True)
         for name in ("peak_rotation", "overturning_time")
     )

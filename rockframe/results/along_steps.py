@@ -51,26 +51,26 @@ class AlongSteps:
 
     def each_largest(self, *quantities: Callable[[Values], Array]) -> list[tuple[Array, Array]]:
         """Return the peaks of the rows of each of several quantities, and their times [s]."""
-        shown = [quantity(self.shown) for quantity in quantities]
+        at_steps = [quantity(self.shown) for quantity in quantities]
         if len(self.steps.time) < 2:  # no step was made
-            return [(np.zeros(len(one)), np.full(len(one), np.nan)) for one in shown]
-        steps = [self._candidate_steps(one) for one in shown]
+            return [(np.zeros(len(rows)), np.full(len(rows), np.nan)) for rows in at_steps]
+        steps = [self._candidate_steps(rows) for rows in at_steps]
         every = np.unique(np.concatenate(steps))
         inside = self.inside(every)
         return [
-            self._peaks(one, which, quantity(inside), np.searchsorted(every, which))
-            for quantity, one, which in zip(quantities, shown, steps, strict=True)
+            self._peaks(rows, which, quantity(inside), np.searchsorted(every, which))
+            for quantity, rows, which in zip(quantities, at_steps, steps, strict=True)
         ]
 
     def _peaks(
-        self, shown: Array, which: Integers, inside: Array, place: Integers
+        self, at_ends: Array, which: Integers, inside: Array, place: Integers
     ) -> tuple[Array, Array]:
         """Return peaks of rows in the steps `which`, evaluated inside at `place` of `inside`."""
-        inner = inside.reshape(len(shown), -1, len(FRACTIONS))[:, place]
-        both_ends = shown[:, which - 1, None], shown[:, which, None]
-        known = np.concatenate([both_ends[0], inner, both_ends[1]], axis=-1)
-        peak, top = _interpolated_maxima(known)
-        row, best = np.arange(len(shown)), np.argmax(peak, axis=1)
+        inner = inside.reshape(len(at_ends), -1, len(FRACTIONS))[:, place]
+        both_ends = at_ends[:, which - 1, None], at_ends[:, which, None]
+        values = np.concatenate([both_ends[0], inner, both_ends[1]], axis=-1)
+        peak, top = _interpolated_maxima(values)
+        row, best = np.arange(len(at_ends)), np.argmax(peak, axis=1)
         length = self.steps.length[which]
         time = (self.steps.time[which] - length)[best] + length[best] * top[row, best] / PARTS
         return peak[row, best], time
@@ -80,12 +80,12 @@ class AlongSteps:
 
         NaN and 0 if it never does. A magnitude that reaches zero in a step needs its sign.
         """
-        shown = quantity(self.shown)
-        beyond = np.maximum(np.abs(shown[:-1]), np.abs(shown[1:])) > level
+        values = quantity(self.shown)
+        beyond = np.maximum(np.abs(values[:-1]), np.abs(values[1:])) > level
         which = 1 + np.flatnonzero(beyond & (self.steps.length[1:] > 0.0))
         if not len(which):
             return math.nan, 0.0
-        start, end, length = shown[which - 1], shown[which], self.steps.length[which]
+        start, end, length = values[which - 1], values[which], self.steps.length[which]
         # an infinite value is of the sign of the other end
         start = np.where(np.isinf(start), np.copysign(start, end), start)
         end = np.where(np.isinf(end), np.copysign(end, start), end)
@@ -96,14 +96,14 @@ class AlongSteps:
         begins = self.steps.time[which[0]] - length[0] + waits
         return float(begins), float(share @ length)
 
-    def _candidate_steps(self, shown: Array) -> Integers:
+    def _candidate_steps(self, at_ends: Array) -> Integers:
         """Find the steps in which a peak of some row may lie, by the rows of their ends."""
-        bounds, length = np.empty_like(shown), np.ascontiguousarray(self.steps.length)
+        bounds, length = np.empty_like(at_ends), np.ascontiguousarray(self.steps.length)
         per_length = np.divide(1.0, length, out=np.full(len(length), np.nan), where=length > 0.0)
-        step_bounds(shown, length, per_length, bounds)
-        tops = np.fmax.reduce(shown, axis=1)
+        step_bounds(at_ends, length, per_length, bounds)
+        tops = np.fmax.reduce(at_ends, axis=1)
         # a step that has the largest value at one of its ends is never left out
-        reached = np.fmax(shown[:, 1:], shown[:, :-1]) >= tops[:, None]
+        reached = np.fmax(at_ends[:, 1:], at_ends[:, :-1]) >= tops[:, None]
         bounds[:, 1:][reached & (length[1:] > 0.0)] = np.inf
         rows = zip(bounds[:, 1:], tops, strict=True)
         return np.unique(np.concatenate([1 + _highest_bounds(row, top) for row, top in rows]))
@@ -127,28 +127,28 @@ def greater(a: float, b: float) -> float:
 
 
 @inlined
-def slope_in(shown: Matrix, row: int, i: int, per_length: Vector) -> float:
+def slope_in(rows: Matrix, row: int, i: int, per_length: Vector) -> float:
     """Return the mean slope of a row in the step that ends at `i`; NaN where steps begin anew."""
     if i == len(per_length):
         return math.nan
-    return (shown[row, i] - shown[row, i - 1]) * per_length[i]
+    return (rows[row, i] - rows[row, i - 1]) * per_length[i]
 
 
 @background_entry
-def step_bounds(shown: Matrix, length: Vector, per_length: Vector, out: Matrix) -> None:
+def step_bounds(rows: Matrix, length: Vector, per_length: Vector, out: Matrix) -> None:
     """Fill a bound of each row in each step, from values at its ends and changes of slope there.
 
     Slopes across a jump, where steps begin anew and `per_length` is NaN, are left out.
     """
-    for row in range(shown.shape[0]):
-        curvature, slope = math.nan, slope_in(shown, row, 1, per_length)
+    for row in range(rows.shape[0]):
+        curvature, slope = math.nan, slope_in(rows, row, 1, per_length)
         for i in range(1, len(length)):
-            next_slope = slope_in(shown, row, i + 1, per_length)
+            next_slope = slope_in(rows, row, i + 1, per_length)
             next_change = abs(next_slope - slope)
             bulge = greater(curvature, next_change) * length[i]
             if not bulge < math.inf:
                 bulge = 0.0
-            top = greater(shown[row, i - 1], shown[row, i]) + CURVATURE_SHARE * bulge
+            top = greater(rows[row, i - 1], rows[row, i]) + CURVATURE_SHARE * bulge
             out[row, i] = top if length[i] > 0.0 else -math.inf
             curvature, slope = next_change, next_slope
 
@@ -161,24 +161,24 @@ def _highest_bounds(bounds: Array, top: float) -> Integers:
     return which
 
 
-def _interpolated_maxima(known: Array) -> tuple[Array, Array]:
+def _interpolated_maxima(values: Array) -> tuple[Array, Array]:
     """Return the maximum of each row of values, and its place: by a parabola where that fits.
 
     It does not where the second differences beside a maximum differ much from the one at it: there
     is a kink, as where a base begins to press.
     """
-    shape, known = known.shape[:-1], known.reshape(-1, known.shape[-1])
-    largest, row = np.argmax(known, axis=-1), np.arange(len(known))
-    middle = np.minimum(np.maximum(largest, 1), known.shape[-1] - 2)
+    shape, values = values.shape[:-1], values.reshape(-1, values.shape[-1])
+    largest, row = np.argmax(values, axis=-1), np.arange(len(values))
+    middle = np.minimum(np.maximum(largest, 1), values.shape[-1] - 2)
     with np.errstate(invalid="ignore"):
-        second_differences = known[:, :-2] - 2.0 * known[:, 1:-1] + known[:, 2:]
+        second_differences = values[:, :-2] - 2.0 * values[:, 1:-1] + values[:, 2:]
     last = second_differences.shape[-1] - 1
 
-    a, b, c = known[row, middle - 1], known[row, middle], known[row, middle + 1]
+    a, b, c = values[row, middle - 1], values[row, middle], values[row, middle + 1]
     before, curvature, after = (
         second_differences[row, np.minimum(np.maximum(middle - k, 0), last)] for k in (2, 1, 0)
     )
-    most = known[row, largest]
+    most = values[row, largest]
     with np.errstate(divide="ignore", invalid="ignore"):
         slope = 0.5 * (c - a)
         beside = -slope / curvature

@@ -93,19 +93,19 @@ class Diagnostic:
         SchemaError
             The function does not return one number for each instant.
         """
-        found = np.array(self.function(read_only(state)), dtype=np.float64)
-        if found.shape != state["time"].shape:
+        values = np.array(self.function(read_only(state)), dtype=np.float64)
+        if values.shape != state["time"].shape:
             msg = (
-                f"the diagnostic {self.name!r} gave an array of shape {found.shape}, for "
+                f"the diagnostic {self.name!r} gave an array of shape {values.shape}, for "
                 f"{len(state['time'])} instants"
             )
             raise SchemaError(msg)
-        return found
+        return values
 
 
 def read_only(values: Mapping[str, Any]) -> dict[str, Any]:
     """Return arrays as the functions of users see them, who cannot change those of the run."""
-    views = {name: np.asarray(each).view() for name, each in values.items()}
+    views = {name: np.asarray(value).view() for name, value in values.items()}
     for view in views.values():
         view.flags.writeable = False
     return views
@@ -115,7 +115,7 @@ DIAGNOSTICS: Final[dict[str, Diagnostic]] = {}
 """Diagnostics that users have registered, by their names."""
 
 
-def add_diagnostic(one: Diagnostic) -> None:
+def add_diagnostic(diagnostic: Diagnostic) -> None:
     """Add a diagnostic to the schema; it replaces another one of its name."""
-    DIAGNOSTICS[one.name] = one
-    SCHEMA.update({row.name: row for row in one.rows})
+    DIAGNOSTICS[diagnostic.name] = diagnostic
+    SCHEMA.update({row.name: row for row in diagnostic.rows})

@@ -40,27 +40,27 @@ def force_histories(values: Values, ground: Array, load: BaseLoad) -> dict[str, 
         (values[name] for name in ROTATIONS_ON_BASE if name in values), values["rotation"]
     )
     sine, cosine = sines_cosines(on_base, small=small)
-    found: dict[str, AnyArray] = {
+    histories: dict[str, AnyArray] = {
         "absolute_horizontal_acceleration": values["horizontal_acceleration"] + ground[:, 0],
         "absolute_vertical_acceleration": values["vertical_acceleration"] + ground[:, 1],
         "base_overturning_moment": load.body.base_moment(values, sine, cosine, small=small),
     }
-    return found | friction_demands(values, load)
+    return histories | friction_demands(values, load)
 
 
 def friction_demands(values: Values, load: BaseLoad) -> dict[str, AnyArray]:
     """Return the friction demand of the bases, by their names in the schema."""
     least = FORCE_TOLERANCE * load.weight
-    found: dict[str, AnyArray] = {
+    demands: dict[str, AnyArray] = {
         "friction_demand": friction_demand(
             values["horizontal_reaction"], values["vertical_reaction"], least
         )
     }
     if all(name in values for name in SOIL_FRICTION_COLUMNS):
-        found["soil_friction_demand"] = friction_demand(
+        demands["soil_friction_demand"] = friction_demand(
             values["base_shear"], values["soil_reaction"], least
         )
-    return found
+    return demands
 
 
 def friction_demand(tangential: Array, normal: Array, least: float) -> Array:
@@ -94,30 +94,30 @@ class EventStates:
     before: Values  # columns and what follows from them, by their names in the schema
     after: Values
 
-    def select(self, kept: NDArray[np.bool_]) -> "EventStates":
+    def select(self, selected: NDArray[np.bool_]) -> "EventStates":
         """Return some of the events."""
         before, after = (
-            {name: values[kept] for name, values in side.items()}
+            {name: values[selected] for name, values in side.items()}
             for side in (self.before, self.after)
         )
-        return EventStates(self.time[kept], self.is_impact[kept], before, after)
+        return EventStates(self.time[selected], self.is_impact[selected], before, after)
 
     def impulses(self, mass: float) -> dict[str, AnyArray]:
         """Return the impulses of the base on the body at the events [N s].
 
         Their ratio at an impact on rigid ground is :eq:`eq-impact-friction`.
         """
-        found: dict[str, AnyArray] = {}
+        impulses: dict[str, AnyArray] = {}
         for way in ("horizontal", "vertical"):
-            shown = f"{way}_velocity_on_base"  # in a cascade that of the second stage
-            name = shown if shown in self.after else f"{way}_velocity"
-            found[f"event_{way}_impulse"] = mass * (self.after[name] - self.before[name])
-        return found
+            on_base = f"{way}_velocity_on_base"  # in a cascade that of the second stage
+            name = on_base if on_base in self.after else f"{way}_velocity"
+            impulses[f"event_{way}_impulse"] = mass * (self.after[name] - self.before[name])
+        return impulses
 
     def impulses_on_base(self, load: BaseLoad) -> tuple[Array, Array]:
         """Return the impulses along and normal to what the base stands on, which may lean [N s]."""
-        found = self.impulses(load.body.mass)
-        across, up = found["event_horizontal_impulse"], found["event_vertical_impulse"]
+        impulses = self.impulses(load.body.mass)
+        across, up = impulses["event_horizontal_impulse"], impulses["event_vertical_impulse"]
         if "vertical_velocity_on_base" in self.after:  # under a second stage nothing leans
             return across, up
         on_base = next((self.after[name] for name in ROTATIONS_ON_BASE if name in self.after), None)

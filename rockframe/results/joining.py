@@ -129,8 +129,8 @@ def concat(
             "rf.table(runs, 'histories') puts histories one below the other"
         )
         raise SchemaError(msg)
-    kept = [name for name in parts[0].data_vars if name in common]
-    rows = [part[kept].drop_encoding() for part in parts]
+    shared = [name for name in parts[0].data_vars if name in common]
+    rows = [part[shared].drop_encoding() for part in parts]
     rows = [row if dim in row.dims else row.expand_dims(dim) for row in rows]
     _refuse_unlike_units(rows)
     try:
@@ -179,8 +179,8 @@ def _refuse_unlike_units(rows: Sequence[xr.Dataset]) -> None:
     for name in set[Any].union(*(set(row.variables) for row in rows)):
         units = dict.fromkeys(row[name].attrs.get("units") for row in rows if name in row.variables)
         if len(units) > 1:
-            found = " and ".join("no unit" if one is None else str(one) for one in units)
-            msg = f"{_OWNER}: {name} is in {found}; put it into one unit in all of them"
+            stated = " and ".join("no unit" if unit is None else str(unit) for unit in units)
+            msg = f"{_OWNER}: {name} is in {stated}; put it into one unit in all of them"
             raise SchemaError(msg)
 
 
@@ -189,9 +189,14 @@ def _with_all_labels(rows: Sequence[xr.Dataset], dim: str) -> list[xr.Dataset]:
     places: dict[str, list[Any]] = {}
     for name in (*BODY, *RESTRAINER):
         labels = [row[name].to_numpy().tolist() for row in rows if name in row.coords]
-        if name != dim and any(one != labels[0] for one in labels):
-            places[name] = list(dict.fromkeys(label for one in labels for label in one))
-    return [row.reindex({n: one for n, one in places.items() if n in row.coords}) for row in rows]
+        if name != dim and any(row_labels != labels[0] for row_labels in labels):
+            places[name] = list(
+                dict.fromkeys(label for row_labels in labels for label in row_labels)
+            )
+    return [
+        row.reindex({n: all_labels for n, all_labels in places.items() if n in row.coords})
+        for row in rows
+    ]
 
 
 def _type_flags(joined: xr.Dataset) -> None:
@@ -206,10 +211,10 @@ def _with_motions(rows: Sequence[xr.Dataset], dim: str) -> list[xr.Dataset]:
     """Add the names of motions to rows as a coordinate, unless they are a shared attribute."""
     lacking = [row for row in rows if MOTION not in row.variables]
     names = {row.attrs.get(MOTION) for row in lacking}
-    known = all(isinstance(name, str) for name in names)
+    named = all(isinstance(name, str) for name in names)
     alike = len(lacking) == len(rows) and len(names) == 1
     along_another = any(MOTION in row.dims for row in rows)
-    if not known or (dim != MOTION and (alike or along_another)):
+    if not named or (dim != MOTION and (alike or along_another)):
         return list(rows)
     return [
         row.assign_coords(
@@ -243,16 +248,16 @@ _EQUAL_ATTRIBUTES: Final = (
 def _as_one_sweep(values: Sequence[xr.Dataset], dim: str, joined: xr.Dataset) -> dict[str, Any]:
     """Return the attributes of one sweep to sweeps that differ only along `dim`; else none."""
     attributes = [run.attrs for run in values]
-    if not all(name in one for one in attributes for name in SWEEP_ATTRIBUTES):
+    if not all(name in attrs for attrs in attributes for name in SWEEP_ATTRIBUTES):
         return {}
     first = attributes[0]
     alike = _EQUAL_ATTRIBUTES if dim == MOTION else (*_EQUAL_ATTRIBUTES, *MOTION_ATTRIBUTES)
-    if any(one.get(name) != first.get(name) for one in attributes for name in alike):
+    if any(attrs.get(name) != first.get(name) for attrs in attributes for name in alike):
         return {}
     axes = [axis["name"] for axis in json.loads(first["axes_json"])]
     if dim not in (MOTION, *axes) or dim not in joined.coords or not joined.indexes[dim].is_unique:
         return {}
-    digests = " ".join(str(one["study_sha256"]) for one in attributes)
+    digests = " ".join(str(attrs["study_sha256"]) for attrs in attributes)
     common = {
         CASE_COUNT: joined["status"].size,
         "study_sha256": hashlib.sha256(f"joined along {dim}: {digests}".encode()).hexdigest(),
@@ -260,15 +265,15 @@ def _as_one_sweep(values: Sequence[xr.Dataset], dim: str, joined: xr.Dataset) ->
     if dim != MOTION:
         return common
     motions = {
-        name: json.dumps([motion for one in attributes for motion in json.loads(one[name])])
+        name: json.dumps([motion for attrs in attributes for motion in json.loads(attrs[name])])
         for name in MOTION_ATTRIBUTES
     }
     names = json.loads(motions["motion_names"])
     return common | motions if len(set(names)) == len(names) else {}
 
 
-def _same(one: object, other: object) -> bool:
-    a, b = np.asarray(one), np.asarray(other)
+def _same(first: object, second: object) -> bool:
+    a, b = np.asarray(first), np.asarray(second)
     return np.array_equal(a, b, equal_nan=a.dtype.kind == b.dtype.kind == "f")
 
 
@@ -280,12 +285,12 @@ def _labelled(
             f"{_OWNER}: labels must be a list of values, one for each run, got {short_repr(labels)}"
         )
         raise SchemaError(msg)
-    each = labels.to_numpy() if isinstance(labels, xr.DataArray) else list(labels)
-    if any(attached_unit(one) for one in each):
+    listed = labels.to_numpy() if isinstance(labels, xr.DataArray) else list(labels)
+    if any(attached_unit(label) for label in listed):
         example = "xr.DataArray([1, 2], attrs={'units': 'm s^-2'})"
         msg = f"{_OWNER}: labels with a unit come as {example}, got {short_repr(labels)}"
         raise SchemaError(msg)
-    values = np.asarray(each)
+    values = np.asarray(listed)
     if values.shape != (joined.sizes[dim],):
         found = f"{len(values)} labels" if values.ndim == 1 else f"labels of shape {values.shape}"
         msg = f"{_OWNER}: found {found} for {joined.sizes[dim]} runs along {dim!r}"

@@ -47,8 +47,8 @@ PEAK_SLIPS: Final = ("peak_slip", "peak_body_slip", "peak_cap_slip")
 
 def peak_share(run: Summary, angles: OverturningAngles) -> float:
     """Return the largest ratio of a peak rotation to the overturning angle of its side and body."""
-    own = maximum(run.peak_right / angles.right, run.peak_left / angles.left)
-    return maximum(own, run.other_rotation_ratio)
+    share = maximum(run.peak_right / angles.right, run.peak_left / angles.left)
+    return maximum(share, run.other_rotation_ratio)
 
 
 def numbered_columns(name: str, count: int) -> tuple[str, ...]:
@@ -60,24 +60,24 @@ def body_histories(
     model: ContactModel, run: Trajectory, values: Mapping[str, AnyArray]
 ) -> dict[str, AnyArray]:
     """Return histories, those of all bodies and of all restrainers stacked in one array each."""
-    kept = {name: each for name, each in values.items() if name in SCHEMA}
+    histories = {name: value for name, value in values.items() if name in SCHEMA}
 
     def of_each(name: str, count: int) -> AnyArray:
-        return np.array([values[each] for each in numbered_columns(name, count)])
+        return np.array([values[column] for column in numbered_columns(name, count)])
 
     if model.links:
-        kept |= {name: of_each(name, model.links) for name in OF_EACH_LINK}
+        histories |= {name: of_each(name, model.links) for name in OF_EACH_LINK}
     if not model.shows_bodies:
-        return kept
+        return histories
     count = model.system.bodies()
-    kept |= {name: of_each(one, count) for name, one in OF_EACH_BODY.items()}
+    histories |= {name: of_each(column, count) for name, column in OF_EACH_BODY.items()}
     if "slip" in values:
-        kept["body_slip"] = of_each("slip", count)
-    kept["body_contact_state"] = np.array(
+        histories["body_slip"] = of_each("slip", count)
+    histories["body_contact_state"] = np.array(
         [model.contact_states(run.mode, k) for k in range(count)], dtype=np.int8
     )
-    kept["body"] = np.arange(count) + 1
-    return kept
+    histories["body"] = np.arange(count) + 1
+    return histories
 
 
 def broken_links(model: ContactModel, ending: Ending) -> list[int]:
@@ -151,7 +151,7 @@ def energy_histories(
     memory, row = memory_at_outputs(run)
     lost = model.mass * memory[row]
     work = model.mass * run.work
-    found: dict[str, AnyArray] = {
+    energies: dict[str, AnyArray] = {
         "kinetic_energy": stored[:, 0].copy(),
         "potential_energy": stored[:, 1].copy(),
         "elastic_energy": stored[:, 2].copy(),
@@ -164,9 +164,9 @@ def energy_histories(
         raised = (
             model.mass * slope.along_gravity * (displacement + _carrier_displacement(model, run))
         )
-        found["potential_energy"] = found["potential_energy"] + raised
-        found["input_energy"] = found["input_energy"] + (raised - raised[0])
-    return found
+        energies["potential_energy"] = energies["potential_energy"] + raised
+        energies["input_energy"] = energies["input_energy"] + (raised - raised[0])
+    return energies
 
 
 def event_columns(model: ContactModel, run: Trajectory) -> dict[str, AnyArray]:
@@ -183,9 +183,9 @@ def event_columns(model: ContactModel, run: Trajectory) -> dict[str, AnyArray]:
         of_event = events.memory[:, model.memory.index("body_of_event")]
         contacts["event_body"] = np.where(highest, 1, of_event).astype(int)[shown]
     if model.links:
-        whole = np.isin(events.kind, (OVERTURNING, TOPPLED))
+        overturned = np.isin(events.kind, (OVERTURNING, TOPPLED))
         of_event = events.memory[:, model.memory.index("link_of_event")]
-        contacts["event_restrainer"] = np.where(whole, 0, of_event).astype(int)[shown]
+        contacts["event_restrainer"] = np.where(overturned, 0, of_event).astype(int)[shown]
     return {
         "event_time": events.time[shown],
         "event_kind": events.kind[shown].astype(np.int8),
@@ -217,7 +217,7 @@ def scalars(
     if len(every) > 1 and setting.stacked:
         sides |= {"peak_cap_slip": every[1].peak, "residual_cap_slip": every[1].residual}
     elif len(every) > 1:
-        sides["peak_body_slip"] = np.array([one.peak for one in every])
+        sides["peak_body_slip"] = np.array([slips.peak for slips in every])
     return sides | {
         "overturned": run.reached_limit,
         "overturning_time": run.overturning_time,
@@ -243,17 +243,17 @@ def overturns(runs: xr.Dataset) -> xr.DataArray:
 
 def verdict_of(run: xr.Dataset) -> bool | None:
     """Return the verdict of one run, see :func:`overturns`; None if it has none."""
-    found = float(overturns(run))
-    return None if math.isnan(found) else bool(found)
+    overturned = float(overturns(run))
+    return None if math.isnan(overturned) else bool(overturned)
 
 
 def overturned_from_status(status: AnyArray) -> Array:
     """Return the verdicts of statuses: 1, 0, or NaN where there is none."""
-    found = np.full(np.shape(status), np.nan)
-    for one in Status:
-        if one.overturned is not None:
-            found[status == one] = one.overturned
-    return found
+    verdicts = np.full(np.shape(status), np.nan)
+    for member in Status:
+        if member.overturned is not None:
+            verdicts[status == member] = member.overturned
+    return verdicts
 
 
 _STOP_REASONS = {
@@ -318,8 +318,8 @@ def _slip_words(slips: SlipRange) -> str:
         return f"Slid {slips.peak:.3g} m to the {most.name.lower()} and back"
     text = f"Slid {abs(slips.residual):.3g} m to the {side.name.lower()}"
     if abs(slips.residual) < LARGE_RESIDUAL_SHARE * slips.peak:
-        other = "" if most is side else f"to the {most.name.lower()} "
-        text += f" ({slips.peak:.3g} m {other}at most)"
+        side_of_peak = "" if most is side else f"to the {most.name.lower()} "
+        text += f" ({slips.peak:.3g} m {side_of_peak}at most)"
     return text
 
 

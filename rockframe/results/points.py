@@ -86,8 +86,8 @@ def point_peaks(
 
     peaks, _ = along.largest(sizes)
     return {
-        row.name: one
-        for row, one in zip(POINT_PEAKS, np.split(peaks, len(POINT_PEAKS)), strict=True)
+        row.name: peak
+        for row, peak in zip(POINT_PEAKS, np.split(peaks, len(POINT_PEAKS)), strict=True)
     }
 
 

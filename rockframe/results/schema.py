@@ -130,8 +130,8 @@ def build_dataset(
             raise SchemaError(msg)
         variables[name] = (dims, data)
         labels[name] = row.attributes("float64" if gaps else None)
-    own = [name for name in variables if SCHEMA[name].dims == (name,) or name in LABELS]
-    coordinates = {name: variables.pop(name) for name in sorted(own, key=[*SCHEMA].index)}
+    names = [name for name in variables if SCHEMA[name].dims == (name,) or name in LABELS]
+    coordinates = {name: variables.pop(name) for name in sorted(names, key=[*SCHEMA].index)}
     dataset = xr.Dataset(
         variables,
         coords=coordinates,
@@ -174,14 +174,14 @@ def without_fill_values(dataset: xr.Dataset) -> xr.Dataset:
 
 def checked_results(values: Mapping[str, Any], sizes: Mapping[str, int]) -> dict[str, NDArray[Any]]:
     """Return results of users' functions as arrays; refuse shapes that differ from the schema."""
-    sizes, found = dict(sizes), {name: np.asarray(value) for name, value in values.items()}
-    for name, data in found.items():
+    sizes, results = dict(sizes), {name: np.asarray(value) for name, value in values.items()}
+    for name, data in results.items():
         dims = schema_row(name).dims
-        wanted = tuple(sizes.setdefault(*each) for each in zip(dims, data.shape, strict=False))
-        if data.ndim != len(dims) or data.shape != wanted:
+        expected = tuple(sizes.setdefault(*size) for size in zip(dims, data.shape, strict=False))
+        if data.ndim != len(dims) or data.shape != expected:
             msg = f"{name!r} over {dims} has the shape {data.shape}"
-            raise SchemaError(f"{msg}, expected {wanted}" if len(wanted) == len(dims) else msg)
-    return found
+            raise SchemaError(f"{msg}, expected {expected}" if len(expected) == len(dims) else msg)
+    return results
 
 
 def history_line(done: str) -> str:

@@ -143,9 +143,9 @@ def _stacked_rows(runs: Sequence[xr.Dataset], kind: Contents, labels: pd.Index) 
         msg = f"{_OWNER}: found datasets of different dimensions, {sorted(dims)}; expected the same"
         raise SchemaError(msg)
     if not any(dims):
-        found = pd.concat(frames, ignore_index=True)
-        found.index = labels
-        return found
+        rows = pd.concat(frames, ignore_index=True)
+        rows.index = labels
+        return rows
     names = [*labels.names, *frames[0].index.names]
     return pd.concat(frames, keys=labels, names=names)
 
@@ -197,13 +197,17 @@ def _dimension_groups(run: xr.Dataset, names: Sequence[str]) -> list[list[str]]:
     """
     dims = {name: frozenset(run.variables[name].dims) for name in names}
     widest = [
-        one for one in dict.fromkeys(dims.values()) if not any(one < of for of in dims.values())
+        group
+        for group in dict.fromkeys(dims.values())
+        if not any(group < of for of in dims.values())
     ]
-    found: dict[frozenset[Hashable], list[str]] = {one: [] for one in widest}
-    for name, own in dims.items():
-        around = [one for one in widest if own <= one]
-        found[min(around, key=lambda one: math.prod(run.sizes[dim] for dim in one))].append(name)
-    return list(found.values())
+    groups: dict[frozenset[Hashable], list[str]] = {group: [] for group in widest}
+    for name, variable_dims in dims.items():
+        around = [group for group in widest if variable_dims <= group]
+        groups[min(around, key=lambda group: math.prod(run.sizes[dim] for dim in group))].append(
+            name
+        )
+    return list(groups.values())
 
 
 def _rows_of(run: xr.Dataset, kind: Contents, names: list[str]) -> pd.DataFrame:

@@ -69,15 +69,15 @@ class TrialScene:
     @property
     def parts(self) -> dict[str, dict[str, Any]]:
         """Tables of the parts."""
-        found = {"block": {name: self._quantity(name) for name in ("width", "height", "mass")}}
+        tables = {"block": {name: self._quantity(name) for name in ("width", "height", "mass")}}
         of_base = {"pads": "pad", "soil": "soil"}
         if self.base in of_base:
             stem = of_base[self.base]
-            found[self.base] = {
+            tables[self.base] = {
                 "stiffness": self._quantity(f"{stem}_stiffness"),
                 "damping_ratio": self._quantity(f"{stem}_damping"),
             }
-        return found
+        return tables
 
     def system(self) -> System:
         """Build the scene."""
@@ -110,7 +110,7 @@ class TrialScene:
             lines += [
                 "",
                 f"[{name}]",
-                *(f"{key} = {_toml_value(one)}" for key, one in table.items()),
+                *(f"{key} = {_toml_value(value)}" for key, value in table.items()),
             ]
             if name == "motion" and self.numbers["scale"] != 1.0:
                 factor = _toml_value(self.numbers["scale"])
@@ -121,20 +121,22 @@ class TrialScene:
         return {name: self._quantity(name) for name in ("amplitude", "frequency")}
 
     def _quantity(self, name: str) -> str | float:
-        return next(one for one in CONTROLS if one.name == name).quantity(self.numbers[name])
+        return next(control for control in CONTROLS if control.name == name).quantity(
+            self.numbers[name]
+        )
 
 
 def motion_choices(record: NamedRecord | None) -> dict[str, str]:
     """Return the motions of the page; the record, if there is one, comes first."""
-    own = {} if record is None else {RECORD: f"Record: {record.motion.name}"}
-    return {**own, **PULSES, EXAMPLE: "Example record (Loma Prieta 1989)"}
+    of_record = {} if record is None else {RECORD: f"Record: {record.motion.name}"}
+    return {**of_record, **PULSES, EXAMPLE: "Example record (Loma Prieta 1989)"}
 
 
 def read_choice(
     values: Mapping[str, str], record: NamedRecord | None
 ) -> tuple[TrialScene, list[str]]:
     """Read the address of the page; a wrong value is reported and replaced by its default."""
-    known = [*(one.name for one in CONTROLS), "base", "motion"]
+    known = [*(control.name for control in CONTROLS), "base", "motion"]
     faults = [
         f"there is no {short_repr(name)}"
         + (did_you_mean(name, known) or f"; there are {', '.join(known)}")

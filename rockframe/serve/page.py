@@ -54,7 +54,9 @@ def trial_page(choice: TrialScene, motions: Mapping[str, str], outcome: str) -> 
 def outcome_html(outcome: TrialOutcome, query: Mapping[str, str]) -> str:
     """Return the part of the page with the outcome of a run."""
     address = escape(urlencode(query))
-    cautions = "".join(banner("To be used with care", one, "doubt") for one in outcome.warnings)
+    cautions = "".join(
+        banner("To be used with care", warning, "doubt") for warning in outcome.warnings
+    )
     return (
         banner(outcome.title, outcome.verdict, outcome.kind)
         + cautions
@@ -68,7 +70,7 @@ def outcome_html(outcome: TrialOutcome, query: Mapping[str, str]) -> str:
 
 def faults_html(faults: Sequence[str]) -> str:
     """Return the part of the page with faults."""
-    lines = "".join(f"<li>{escape(one)}</li>" for one in faults)
+    lines = "".join(f"<li>{escape(fault)}</li>" for fault in faults)
     return f'<div class="verdict doubt" role="alert"><strong>Not run</strong><ul>{lines}</ul></div>'
 
 
@@ -92,19 +94,20 @@ def _number_inputs(
     choice: TrialScene, of: str, *, only: str = "", without: Sequence[str] = ()
 ) -> list[str]:
     return [
-        _number_input(one, choice.numbers[one.name])
-        for one in CONTROLS
-        if one.of == of and one.name not in without and only in ("", one.name)
+        _number_input(control, choice.numbers[control.name])
+        for control in CONTROLS
+        if control.of == of and control.name not in without and only in ("", control.name)
     ]
 
 
-def _number_input(one: Control, value: float) -> str:
-    unit = f" [{escape(with_superscripts(one.unit))}]" if one.unit else ""
-    ends = f'min="{one.low:g}" max="{one.high:g}"'
+def _number_input(control: Control, value: float) -> str:
+    unit = f" [{escape(with_superscripts(control.unit))}]" if control.unit else ""
+    ends = f'min="{control.low:g}" max="{control.high:g}"'
     return (
-        f'<div class="number"><label for="{one.name}">{one.words}{unit}</label>'
-        f'<input type="number" id="{one.name}" name="{one.name}" {ends} step="any" '
+        f'<div class="number"><label for="{control.name}">{control.words}{unit}</label>'
+        f'<input type="number" id="{control.name}" name="{control.name}" {ends} step="any" '
         f'value="{value:g}" required>'
-        f'<input type="range" data-for="{one.name}" {ends} step="{one.step:g}" value="{value:g}" '
-        f'aria-label="{one.words}, slider"></div>'
+        f'<input type="range" data-for="{control.name}" {ends} step="{control.step:g}" '
+        f'value="{value:g}" '
+        f'aria-label="{control.words}, slider"></div>'
     )

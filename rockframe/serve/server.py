@@ -142,7 +142,7 @@ class _RequestHandler(BaseHTTPRequestHandler):
         origin = self.headers.get("Origin")
         return (
             self.headers.get("Host", "") in hosts
-            and (origin is None or origin in {f"http://{one}" for one in hosts})
+            and (origin is None or origin in {f"http://{host}" for host in hosts})
             and self.headers.get("Sec-Fetch-Site") not in ("cross-site", "same-site")
         )
 

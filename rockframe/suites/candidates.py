@@ -88,7 +88,7 @@ def candidates_of(
         msg = f"{owner}: {motionless[0]!r} has no acceleration, and no factor brings it to a target"
         raise ComponentError(msg)
     logarithms = np.log(spectra)
-    conditioned, compared = (np.searchsorted(every, one) for one in (fixed, seconds))
+    conditioned, compared = (np.searchsorted(every, group) for group in (fixed, seconds))
     factors = np.exp((log_target[conditioned] - logarithms[:, conditioned]).mean(axis=1))
     return Candidates(
         tuple(labels),
@@ -110,7 +110,7 @@ def candidates_of(
 
 def default_periods(target: TargetSpectrum) -> Array:
     """Return the periods at which spectra are compared with a target by default [s]."""
-    low, high = (float(np.clip(one, *target.limits)) for one in _DEFAULT_BAND)
+    low, high = (float(np.clip(limit, *target.limits)) for limit in _DEFAULT_BAND)
     return np.geomspace(low, high, _DEFAULT_COUNT) if high > low else np.array([low])
 
 
@@ -120,8 +120,8 @@ def _read_bounds(items: tuple[RatioLike, RatioLike] | None, owner: str) -> tuple
     values = checked_list(items, owner=owner, name="bounds", of="factors")
     if len(values) == 2:
         low, high = (
-            to_ratio(one, owner=owner, name="bounds", condition=POSITIVE, example="(0.25, 4)")
-            for one in values
+            to_ratio(bound, owner=owner, name="bounds", condition=POSITIVE, example="(0.25, 4)")
+            for bound in values
         )
         if low <= high:
             return low, high
@@ -135,7 +135,7 @@ def _spectra(
     with_unit = (seconds, str(PERIOD.unit))
     if kind is Combination.EACH:
         inputs = read_inputs(suite, "horizontal", owner=owner)
-        found = spectra_of(inputs, seconds, np.array([damping_ratio]))[
+        spectra = spectra_of(inputs, seconds, np.array([damping_ratio]))[
             "pseudo_spectral_acceleration"
         ]
         motions = dict(suite)
@@ -147,10 +147,10 @@ def _spectra(
                 "and the suite has no pair"
             )
             raise ComponentError(msg)
-        found = rotated_spectrum(pairs, with_unit, damping_ratio)[_PAIR_VARIABLES[kind]]
+        spectra = rotated_spectrum(pairs, with_unit, damping_ratio)[_PAIR_VARIABLES[kind]]
         motions = {record: pair.first for record, pair in pairs.items()}
     events = [str(motion.metadata.get("event", "")) for motion in motions.values()]
-    return list(motions), found.isel(damping_ratio=0).to_numpy(), events
+    return list(motions), spectra.isel(damping_ratio=0).to_numpy(), events
 
 
 def _conditioning_words(value: bool, fixed: Array) -> str:

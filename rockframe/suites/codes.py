@@ -148,15 +148,15 @@ def asce_7(
         "short_period_acceleration": short_period_acceleration,
         "one_second_acceleration": one_second_acceleration,
     }
-    short, one = (
+    short, long = (
         to_si(value, ACCELERATION, owner=owner, name=name, condition=POSITIVE)
         for name, value in named.items()
     )
     last = to_si(long_period, PERIOD, owner=owner, name="long_period", condition=POSITIVE)
-    corner = one / short  # [s], as S_D1 is the acceleration at 1 s
+    corner = long / short  # [s], as S_D1 is the acceleration at 1 s
     if last <= corner:
         msg = f"{owner}: long_period must exceed S_D1/S_DS, {corner:.4g} s"
         raise ComponentError(msg)
 
-    words = f"ASCE 7, S_DS {short:.4g} m/s^2, S_D1 {one:.4g} m/s^2"
-    return words, _ASCE7(short, one, corner, last)
+    words = f"ASCE 7, S_DS {short:.4g} m/s^2, S_D1 {long:.4g} m/s^2"
+    return words, _ASCE7(short, long, corner, last)

@@ -33,22 +33,22 @@ def column_value(name: str, motion: GroundMotion) -> Any:
 
 def known_columns(motions: Mapping[str, GroundMotion]) -> dict[str, np.ndarray]:
     """Return the columns of the schema for which some motion has a value."""
-    found: dict[str, np.ndarray] = {}
+    columns: dict[str, np.ndarray] = {}
     for name in COLUMNS:
         values = [column_value(name, motion) for motion in motions.values()]
         if all(value is None for value in values):
             continue
         kind = SCHEMA[name].dtype
         missing: Any = "" if kind == "str" else math.nan
-        found[name] = np.array([missing if value is None else value for value in values])
-    return found
+        columns[name] = np.array([missing if value is None else value for value in values])
+    return columns
 
 
 def other_columns(motions: Mapping[str, GroundMotion]) -> dict[str, list[Any]]:
     """Return other metadata of the files, by their keys, None where a motion has none."""
-    keys = dict.fromkeys(key for one in motions.values() for key in one.metadata)
+    keys = dict.fromkeys(key for motion in motions.values() for key in motion.metadata)
     return {
-        key: [one.metadata.get(key) for one in motions.values()]
+        key: [motion.metadata.get(key) for motion in motions.values()]
         for key in keys
         if key not in COLUMNS
     }
@@ -87,7 +87,7 @@ def matching_labels(
     """Return the labels of the motions that meet all criteria."""
     for name in criteria:
         check_column(motions, name, owner=_OWNER)
-    tests = {name: _criterion(name, given) for name, given in criteria.items()}
+    tests = {name: _criterion(name, criterion) for name, criterion in criteria.items()}
     return [
         label
         for label, motion in motions.items()
@@ -97,7 +97,9 @@ def matching_labels(
 
 def check_column(motions: Mapping[str, GroundMotion], name: object, *, owner: str) -> None:
     """Refuse a column for which no motion has a value."""
-    known = dict.fromkeys([*COLUMNS, *(key for one in motions.values() for key in one.metadata)])
+    known = dict.fromkeys(
+        [*COLUMNS, *(key for motion in motions.values() for key in motion.metadata)]
+    )
     if not isinstance(name, str) or name not in known:
         requested = f"{short_repr(name)}{did_you_mean(name, known)}"
         msg = f"{owner}: there is no column {requested}; known are {', '.join(known)}"
@@ -106,13 +108,13 @@ def check_column(motions: Mapping[str, GroundMotion], name: object, *, owner: st
 
 def sorted_labels(motions: Mapping[str, GroundMotion], name: str, *, descending: bool) -> list[str]:
     """Return the labels in the order of a column; motions without a value come last."""
-    known = {label: column_value(name, motion) for label, motion in motions.items()}
-    with_value = [label for label, value in known.items() if not is_missing(value)]
-    as_text = any(isinstance(known[label], str) for label in with_value)
+    values = {label: column_value(name, motion) for label, motion in motions.items()}
+    with_value = [label for label, value in values.items() if not is_missing(value)]
+    as_text = any(isinstance(values[label], str) for label in with_value)
     with_value.sort(
-        key=lambda label: str(known[label]) if as_text else known[label], reverse=descending
+        key=lambda label: str(values[label]) if as_text else values[label], reverse=descending
     )
-    return [*with_value, *(label for label in known if label not in set(with_value))]
+    return [*with_value, *(label for label in values if label not in set(with_value))]
 
 
 def _passes(test: Test, value: Any) -> bool:
@@ -135,10 +137,10 @@ def _criterion(name: str, argument: Any) -> Test:
         low, high = (None if bound is None else _read_value(name, bound) for bound in bounds)
         return lambda value: (low is None or low <= value) and (high is None or value <= high)
     if isinstance(argument, Collection) and not isinstance(argument, str):
-        accepted = [_read_value(name, one) for one in cast("Collection[Any]", argument)]
+        accepted = [_read_value(name, value) for value in cast("Collection[Any]", argument)]
         return lambda value: _comparison_key(value) in map(_comparison_key, accepted)
-    one = _read_value(name, argument)
-    return lambda value: _comparison_key(value) == _comparison_key(one)
+    wanted = _read_value(name, argument)
+    return lambda value: _comparison_key(value) == _comparison_key(wanted)
 
 
 def _read_value(name: str, value: Any) -> Any:

@@ -179,8 +179,8 @@ class LabelledMotions(Mapping[str, GroundMotion], metaclass=SuggestingMeta):
         """
         labels = matching_labels(self, criteria)
         if not labels:
-            wanted = ", ".join(f"{name}={given!r}" for name, given in criteria.items())
-            msg = f"{type(self).__name__}.select: no motion has {wanted}"
+            requested = ", ".join(f"{name}={criterion!r}" for name, criterion in criteria.items())
+            msg = f"{type(self).__name__}.select: no motion has {requested}"
             raise ComponentError(msg)
         return self.only(labels)
 
@@ -212,10 +212,12 @@ class LabelledMotions(Mapping[str, GroundMotion], metaclass=SuggestingMeta):
         """
         owner = f"{type(self).__name__}.only"
         requested = checked_list(labels, owner=owner, name="labels", of="labels")
-        unknown = [one for one in requested if not isinstance(one, str) or one not in self._motions]
+        unknown = [
+            label for label in requested if not isinstance(label, str) or label not in self._motions
+        ]
         if unknown:
-            found = f"{short_repr(unknown[0])}{did_you_mean(unknown[0], self._motions)}"
-            msg = f"{owner}: there is no motion {found}"
+            named = f"{short_repr(unknown[0])}{did_you_mean(unknown[0], self._motions)}"
+            msg = f"{owner}: there is no motion {named}"
             raise ComponentError(msg)
         return self._with_motions({label: self._motions[label] for label in requested})
 
@@ -315,7 +317,9 @@ class LabelledMotions(Mapping[str, GroundMotion], metaclass=SuggestingMeta):
         >>> print(suite["N"].vertical_acceleration.max().round(3))
         1.0 meter / second ** 2
         """
-        by_record = {one.metadata.get("record"): one for one in self._verticals.values()}
+        by_record = {
+            vertical.metadata.get("record"): vertical for vertical in self._verticals.values()
+        }
         by_record.pop(None, None)
         motions: dict[str, GroundMotion] = {}
         for label, motion in self._motions.items():
@@ -330,11 +334,11 @@ class LabelledMotions(Mapping[str, GroundMotion], metaclass=SuggestingMeta):
         return self._with_motions(motions)
 
     def _with_motions(self, motions: Mapping[str, GroundMotion]) -> Self:
-        kept = {motion.metadata.get("record") for motion in motions.values()}
+        records = {motion.metadata.get("record") for motion in motions.values()}
         verticals = {
-            label: one
-            for label, one in self._verticals.items()
-            if one.metadata.get("record") in kept
+            label: vertical
+            for label, vertical in self._verticals.items()
+            if vertical.metadata.get("record") in records
         }
         return type(self)(
             motions, verticals=verticals, unread=self._unread, remarks=self._remarks,
@@ -348,18 +352,18 @@ def _read_motions(value: object, owner: str) -> dict[str, GroundMotion]:
     if isinstance(value, Mapping):
         motions = with_string_keys(cast("Mapping[Any, Any]", value), owner=owner)
     elif is_iterable(value) and not isinstance(value, str):
-        for one in value:
-            name = str(getattr(one, "name", len(motions)))
+        for motion in value:
+            name = str(getattr(motion, "name", len(motions)))
             if name in motions:
                 msg = f"{owner}: two motions are called {name!r}; give a mapping of labels"
                 raise ComponentError(msg)
-            motions[name] = one
+            motions[name] = motion
     else:
         msg = f"{owner}: motions must be several motions, got {short_repr(value)}; {_EXAMPLE}"
         raise ComponentError(msg)
-    for label, one in motions.items():
-        if not isinstance(one, GroundMotion):
-            msg = f"{owner}: {label!r} needs a GroundMotion, got {short_repr(one)}; {_EXAMPLE}"
+    for label, motion in motions.items():
+        if not isinstance(motion, GroundMotion):
+            msg = f"{owner}: {label!r} needs a GroundMotion, got {short_repr(motion)}; {_EXAMPLE}"
             raise ComponentError(msg)
     return motions
 

@@ -105,12 +105,20 @@ def read_suite(
         else:
             reader.read(file, format, request)
     reader.complete()
-    horizontal = {one.label: one.with_metadata() for one in reader.components if not one.vertical}
-    verticals = {one.label: one.with_metadata() for one in reader.components if one.vertical}
+    horizontal = {
+        component.label: component.with_metadata()
+        for component in reader.components
+        if not component.vertical
+    }
+    verticals = {
+        component.label: component.with_metadata()
+        for component in reader.components
+        if component.vertical
+    }
     if not horizontal:
         raise _no_motions_error(str(path), reader, len(verticals))
     _warn_of_unread(reader)
-    reasons = {one.path: one.reason for one in reader.unread}
+    reasons = {file.path: file.reason for file in reader.unread}
     return MotionSuite(horizontal, verticals=verticals, unread=reasons, remarks=reader.remarks)
 
 
@@ -128,9 +136,9 @@ class _SuiteReader:
 
     def read(self, file: Source, format_name: str | None, request: Request) -> None:
         """Read a file, or record why it was not read."""
-        other = _OTHER_MOTIONS.get(file.suffix)
-        if other is not None:
-            self.unread.append(Unread(file.path, f"found {other}; expected an acceleration"))
+        quantity = _OTHER_MOTIONS.get(file.suffix)
+        if quantity is not None:
+            self.unread.append(Unread(file.path, f"found {quantity}; expected an acceleration"))
             return
         try:
             table = peer_table(file)
@@ -159,7 +167,7 @@ class _SuiteReader:
             if isinstance(reading, RecordError):
                 self.unread.append(Unread.of(reading.path, reading))
                 continue
-            self.remarks += [one for one in reading.warnings if one not in self.remarks]
+            self.remarks += [warning for warning in reading.warnings if warning not in self.remarks]
             label = self._label(reading, alone=len(readings) == 1)
             motion = motion_of_reading(GroundMotion, reading, label)
             component = RecordedComponent(label, motion, reading.vertical, file.path, number)
@@ -198,22 +206,22 @@ class _SuiteReader:
 
 def _no_motions_error(path: str, reader: _SuiteReader, vertical_count: int) -> RecordError:
     count = vertical_count + len(reader.unread)
-    what = f"no horizontal component in {count} file{'' if count == 1 else 's'}"
+    missing = f"no horizontal component in {count} file{'' if count == 1 else 's'}"
     if vertical_count:
-        what += f", {vertical_count} vertical ones"
-    listed = "; ".join(f"{one.path}: {one.reason}" for one in reader.unread[:_MAX_LISTED])
+        missing += f", {vertical_count} vertical ones"
+    listed = "; ".join(f"{file.path}: {file.reason}" for file in reader.unread[:_MAX_LISTED])
     expected = "records of ground motions" + (f" (not read: {listed[:600]})" if listed else "")
-    shown = path if len(path) <= 200 else f"{path[:197]}..."
-    return RecordError(shown, found=what, expected=expected)
+    place = path if len(path) <= 200 else f"{path[:197]}..."
+    return RecordError(place, found=missing, expected=expected)
 
 
 def _warn_of_unread(reader: _SuiteReader) -> None:
     """Warn once, for all files together."""
-    unread = [one for one in reader.unread if not one.path.casefold().endswith(_COMPANIONS)]
+    unread = [file for file in reader.unread if not file.path.casefold().endswith(_COMPANIONS)]
     words: list[str] = []
     if unread:
         listed = "; ".join(
-            f"{PurePath(one.path).name}: {one.reason}" for one in unread[:_MAX_LISTED]
+            f"{PurePath(file.path).name}: {file.reason}" for file in unread[:_MAX_LISTED]
         )
         files = "1 file" if len(unread) == 1 else f"{len(unread)} files"
         words.append(f"{files} not read ({listed}; suite.unread lists all)")

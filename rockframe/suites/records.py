@@ -40,25 +40,29 @@ class RecordedComponent:
     @property
     def metadata(self) -> dict[str, Any]:
         """Metadata from the file and other sources."""
-        own = {
+        chosen = {
             name: self.added_metadata[name]
             for name in _SUITE_METADATA
             if name in self.added_metadata
         }
-        return {**self.added_metadata, **self.motion.metadata, **own}
+        return {**self.added_metadata, **self.motion.metadata, **chosen}
 
     def with_metadata(self) -> GroundMotion:
         """Return the motion with its label and all metadata."""
-        one = self.motion
+        motion = self.motion
         return GroundMotion(
-            one.si, name=self.label, metadata=self.metadata, history=one.history, recipe=one.recipe
+            motion.si,
+            name=self.label,
+            metadata=self.metadata,
+            history=motion.history,
+            recipe=motion.recipe,
         )
 
 
 def sequence_number_of(file: str) -> int | None:
     """Return the record sequence number that PEER writes before the names of its files."""
-    found = _RSN.match(file)
-    return None if found is None else int(found.group(1))
+    match = _RSN.match(file)
+    return None if match is None else int(match.group(1))
 
 
 def assign_records(components: Iterable[RecordedComponent]) -> list[str]:
@@ -87,7 +91,7 @@ def assign_records(components: Iterable[RecordedComponent]) -> list[str]:
             for component in part:
                 component.added_metadata["record"] = unique
             remarks += _assign(unique, part)
-            horizontal = [one for one in part if not one.vertical]
+            horizontal = [component for component in part if not component.vertical]
             unpaired += horizontal if len(horizontal) == 1 else []
     for members in _group_by(unpaired, _event_and_station):
         remarks += _unpaired_remarks(members)
@@ -120,7 +124,7 @@ def _group_by(
 
 
 def _split_by_time(members: list[RecordedComponent]) -> list[list[RecordedComponent]]:
-    starts = [_start(one) for one in members]
+    starts = [_start(member) for member in members]
     known = [start for start in starts if start is not None]
     if len(known) < len(members):
         return [members]
@@ -197,12 +201,12 @@ def _event_and_station(component: RecordedComponent) -> tuple[str, ...]:
 def _instrument(component: RecordedComponent) -> tuple[str, ...]:
     """Return the codes of band and instrument, and the processing, as far as they are known."""
     metadata = component.metadata
-    found = _INSTRUMENT.search(str(metadata.get("component", "")))
-    return ("" if found is None else found.group(1), str(metadata.get("processing", "")))
+    match = _INSTRUMENT.search(str(metadata.get("component", "")))
+    return ("" if match is None else match.group(1), str(metadata.get("processing", "")))
 
 
 def _fits_one_record(members: list[RecordedComponent]) -> bool:
-    verticals = sum(one.vertical for one in members)
+    verticals = sum(member.vertical for member in members)
     return verticals <= 1 and len(members) - verticals <= len(HORIZONTAL)
 
 
@@ -211,47 +215,47 @@ def _unpaired_remarks(members: list[RecordedComponent]) -> list[str]:
     if len(members) < len(HORIZONTAL):
         return []
     statements = {
-        "sensor locations": [str(one.metadata.get("sensor_location", "")) for one in members],
-        "instruments or processings": [" ".join(_instrument(one)).strip() for one in members],
+        "sensor locations": [str(member.metadata.get("sensor_location", "")) for member in members],
+        "instruments or processings": [" ".join(_instrument(member)).strip() for member in members],
     }
     apart = "; ".join(
-        f"{what} {', '.join(repr(value) for value in values)}"
-        for what, values in statements.items()
+        f"{quantity} {', '.join(repr(value) for value in values)}"
+        for quantity, values in statements.items()
         if len(set(values)) > 1
     )
-    labels = ", ".join(one.label for one in members)
+    labels = ", ".join(member.label for member in members)
     return [f"{labels}: of one station and time, but not put together ({apart})"]
 
 
 def _assign(record: str, members: list[RecordedComponent]) -> list[str]:
-    horizontal = [one for one in members if not one.vertical]
-    verticals = [one for one in members if one.vertical]
-    for one in verticals:
-        one.added_metadata["axis"] = VERTICAL
+    horizontal = [component for component in members if not component.vertical]
+    verticals = [component for component in members if component.vertical]
+    for vertical in verticals:
+        vertical.added_metadata["axis"] = VERTICAL
     if not _fits_one_record(members):
-        for one in horizontal:
-            one.added_metadata.pop("axis", None)
-        for one in verticals:
-            one.added_metadata["record"] = one.label
-        found = f"{len(horizontal)} horizontal and {len(verticals)} vertical components"
-        return [f"{record}: {found}, which are not put together"]
-    axes = sorted(str(one.added_metadata.get("axis", "")) for one in horizontal)
+        for component in horizontal:
+            component.added_metadata.pop("axis", None)
+        for vertical in verticals:
+            vertical.added_metadata["record"] = vertical.label
+        counts = f"{len(horizontal)} horizontal and {len(verticals)} vertical components"
+        return [f"{record}: {counts}, which are not put together"]
+    axes = sorted(str(component.added_metadata.get("axis", "")) for component in horizontal)
     if axes != list(HORIZONTAL):
-        for one, axis in zip(horizontal, HORIZONTAL, strict=False):
-            one.added_metadata["axis"] = axis
+        for component, axis in zip(horizontal, HORIZONTAL, strict=False):
+            component.added_metadata["axis"] = axis
     if len(horizontal) < len(HORIZONTAL):
         return []
     first, second = horizontal
     try:
         HorizontalPair(first.motion, second.motion)
     except ComponentError as problem:
-        for one in horizontal:
-            one.added_metadata.pop("axis", None)
+        for component in horizontal:
+            component.added_metadata.pop("axis", None)
         return [f"{record}: {problem}"]
     try:
-        HorizontalPair(first.motion, second.motion, *(one.motion for one in verticals))
+        HorizontalPair(first.motion, second.motion, *(vertical.motion for vertical in verticals))
     except ComponentError as problem:
-        for one in verticals:
-            one.added_metadata["record"] = one.label
+        for vertical in verticals:
+            vertical.added_metadata["record"] = vertical.label
         return [f"{record}, without its vertical component: {problem}"]
     return []

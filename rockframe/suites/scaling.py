@@ -160,18 +160,18 @@ def scaled_set(
     return without_fill_values(dataset)
 
 
-def compared_target(found: xr.Dataset) -> TargetSpectrum | None:
+def compared_target(scaling: xr.Dataset) -> TargetSpectrum | None:
     """Return the target of scaled motions, known at the periods that were compared."""
-    periods = found["period"].to_numpy()
+    periods = scaling["period"].to_numpy()
     if periods.size < 2:
         return None
-    spread = found["target_standard_deviation"].to_numpy()
+    spread = scaling["target_standard_deviation"].to_numpy()
     return TargetSpectrum.from_table(
         (periods, str(Unit.SECOND)),
-        (found["target_spectral_acceleration"].to_numpy(), str(Unit.METRE_PER_SECOND_SQUARED)),
+        (scaling["target_spectral_acceleration"].to_numpy(), str(Unit.METRE_PER_SECOND_SQUARED)),
         standard_deviations=spread.tolist() if spread.any() else None,
-        damping_ratio=float(found.attrs["damping_ratio"]),
-        name=str(found.attrs["target"]),
+        damping_ratio=float(scaling.attrs["damping_ratio"]),
+        name=str(scaling.attrs["target"]),
     )
 
 
@@ -183,32 +183,32 @@ def _standard_deviation(logarithms: Array) -> Array:
 
 
 def scaled_motions(
-    suite: LabelledMotions, found: xr.Dataset
+    suite: LabelledMotions, scaling: xr.Dataset
 ) -> tuple[dict[str, GroundMotion], dict[str, GroundMotion]]:
     """Scale the motions of a suite by the factors that were found."""
     needed = ("scale_factor", "spectral_misfit", MOTION)
-    if any(name not in found.variables for name in needed) or "combination" not in found.attrs:
+    if any(name not in scaling.variables for name in needed) or "combination" not in scaling.attrs:
         msg = (
             "MotionSuite.scaled_to: expected a TargetSpectrum, or a dataset of scaling_to or "
             "selection_for"
         )
         raise SchemaError(msg)
-    each = found.attrs["combination"] == Combination.EACH
+    one_by_one = scaling.attrs["combination"] == Combination.EACH
     motions: dict[str, GroundMotion] = {}
     verticals: dict[str, GroundMotion] = {}
-    for place, value in enumerate(found[MOTION].to_numpy()):
+    for place, value in enumerate(scaling[MOTION].to_numpy()):
         label = str(value)
-        factor = float(found["scale_factor"][place])
-        misfit = float(found["spectral_misfit"][place])
+        factor = float(scaling["scale_factor"][place])
+        misfit = float(scaling["spectral_misfit"][place])
         before = len(motions)
         for name, motion in suite.items():
-            if (name if each else motion.metadata.get("record")) == label:
+            if (name if one_by_one else motion.metadata.get("record")) == label:
                 motions[name] = _scaled(motion, factor, misfit)
         if len(motions) == before:
             msg = f"MotionSuite.scaled_to: the suite has no {label!r}"
             raise ComponentError(msg)
         for name, motion in suite.verticals.items():
-            if not each and motion.metadata.get("record") == label:
+            if not one_by_one and motion.metadata.get("record") == label:
                 verticals[name] = _scaled(motion, factor, misfit)
     return motions, verticals
 

@@ -113,11 +113,11 @@ def selection_for(
     allowed = np.flatnonzero((candidates.factors >= low) & (candidates.factors <= high))
     if allowed.size < size:
         total = len(candidates.labels)
-        found = f"{allowed.size} of {total} motions have factors from {low:g} to {high:g}"
+        reason = f"{allowed.size} of {total} motions have factors from {low:g} to {high:g}"
         advice = "widen bounds, or lower count"
         if allowed.size == total:
-            found, advice = f"found {total} motion{'' if total == 1 else 's'}", "lower count"
-        msg = f"{owner}: {found}, too few for a set of {size}; {advice}"
+            reason, advice = f"found {total} motion{'' if total == 1 else 's'}", "lower count"
+        msg = f"{owner}: {reason}, too few for a set of {size}; {advice}"
         raise ComponentError(msg)
     search = _Search(
         candidates.residuals(candidates.factors)[allowed],
@@ -165,13 +165,13 @@ class _Search:
     def best(self, count: int) -> list[int] | None:
         """Find a set of `count` candidates; None where there are too few earthquakes."""
         alone = np.argsort((self.residuals**2).mean(axis=1), kind="stable")
-        found: list[tuple[float, list[int]]] = []
+        sets: list[tuple[float, list[int]]] = []
         for first in alone[:_MAX_STARTS].tolist():
             chosen = self._grow(first, count)
             if chosen is not None:
                 chosen = self._improve(chosen)
-                found.append((self.misfit(chosen), chosen))
-        return min(found)[1] if found else None
+                sets.append((self.misfit(chosen), chosen))
+        return min(sets)[1] if sets else None
 
     def _misfits(self, others: list[int]) -> Array:
         """Compute :eq:`eq-set-misfit` of a set with each candidate added in turn, shape (n,)."""
@@ -206,17 +206,17 @@ class _Search:
         return chosen
 
     def _improve(self, chosen: list[int]) -> list[int]:
-        now = self.misfit(chosen)
+        misfit = self.misfit(chosen)
         for _ in range(_MAX_PASSES):
-            before = now
+            before = misfit
             for slot in range(len(chosen)):
                 others = chosen[:slot] + chosen[slot + 1 :]
                 misfits = np.where(self._allowed(others), self._misfits(others), np.inf)
                 place = int(np.argmin(misfits))
-                if misfits[place] < now * (1.0 - _MIN_GAIN):
-                    now = float(misfits[place])
+                if misfits[place] < misfit * (1.0 - _MIN_GAIN):
+                    misfit = float(misfits[place])
                     chosen = [*others[:slot], place, *others[slot:]]
-            if now >= before:
+            if misfit >= before:
                 break
         return chosen
 

@@ -42,17 +42,20 @@ _STORED_BAND: Final = (0.01, 20.0)
 _PERIODS: Final = 501
 _TEXTS: Final[dict[str, tuple[str, Callable[[GroundMotion], str]]]] = {
     # variable: meaning, value of a motion
-    "motion_sha256": ("digest of time step and samples", lambda one: one.sha256),
-    "metadata": ("what is known of the motion, as JSON", lambda one: json.dumps({**one.metadata})),
+    "motion_sha256": ("digest of time step and samples", lambda motion: motion.sha256),
+    "metadata": (
+        "what is known of the motion, as JSON",
+        lambda motion: json.dumps({**motion.metadata}),
+    ),
     "history": (
         "what was done to the motion, a line for each step",
-        lambda one: "\n".join(one.history),
+        lambda motion: "\n".join(motion.history),
     ),
     "recipe": (
         "constructor and arguments of an analytic motion, as JSON",
-        lambda one: "" if one.recipe is None else json.dumps({**one.recipe}),
+        lambda motion: "" if motion.recipe is None else json.dumps({**motion.recipe}),
     ),
-    _NAME: ("what titles and messages call the motion", lambda one: one.name),
+    _NAME: ("what titles and messages call the motion", lambda motion: motion.name),
 }
 _RAGGED_ARRAYS: Final = {
     # variable: dimension, count, words of the count
@@ -85,7 +88,7 @@ def suite_dataset(suite: LabelledMotions) -> xr.Dataset:
         source="records and models of ground motions",
     )
     for name, (words, text_of) in _TEXTS.items():
-        texts = np.array([text_of(one) for one in motions.values()])
+        texts = np.array([text_of(motion) for motion in motions.values()])
         dataset[name] = (MOTION, texts, {"long_name": words})
     for name, (dim, count, words) in _RAGGED_ARRAYS.items():
         parts = [stored_arrays(motion.si)[name] for motion in motions.values()]
@@ -110,8 +113,8 @@ def suite_dataset(suite: LabelledMotions) -> xr.Dataset:
 def stored_motions(dataset: xr.Dataset) -> tuple[dict[str, GroundMotion], dict[str, Any]]:
     """Read what :func:`suite_dataset` wrote."""
     if dataset.attrs.get("kind") != _KIND:
-        found = dataset.attrs.get("title", "a dataset of another kind")
-        msg = f"found {found!r}; expected a dataset of MotionSuite.to_dataset"
+        title = dataset.attrs.get("title", "a dataset of another kind")
+        msg = f"found {title!r}; expected a dataset of MotionSuite.to_dataset"
         raise SchemaError(msg)
     try:
         motions = _motions(dataset)
@@ -133,9 +136,11 @@ def stored_motions(dataset: xr.Dataset) -> tuple[dict[str, GroundMotion], dict[s
 
 def _table_of(target: TargetSpectrum) -> dict[str, Any]:
     """Return a target as a table: at its own periods, or at many if it is a formula."""
-    own = getattr(getattr(target.shape, "logarithm", None), "logarithms", None)
+    logarithms = getattr(getattr(target.shape, "logarithm", None), "logarithms", None)
     low, high = np.clip(target.limits, *_STORED_BAND)
-    seconds = np.geomspace(low, high, _PERIODS) if own is None else np.exp(np.array(own))
+    seconds = (
+        np.geomspace(low, high, _PERIODS) if logarithms is None else np.exp(np.array(logarithms))
+    )
     values = target.at_seconds(seconds, owner=_TARGET)
     spread = None if target.deviation is None else target.deviations_at(seconds).tolist()
     table = {"periods": seconds.tolist(), "accelerations": values.tolist()}
@@ -171,7 +176,7 @@ def stored_suite(source: Source, read: Callable[[xr.Dataset], Suite]) -> Suite:
     try:
         with opened_netcdf(source, _EXPECTED) as file:
             # a file may declare more than it holds
-            total = sum(math.prod(map(int, one.shape)) for one in file.variables.values())
+            total = sum(math.prod(map(int, variable.shape)) for variable in file.variables.values())
             if total > _MAX_NUMBERS:
                 expected = f"a suite of at most {_MAX_NUMBERS} numbers"
                 raise source.refuse(found=f"{total} numbers declared", expected=expected)
@@ -184,7 +189,7 @@ def stored_suite(source: Source, read: Callable[[xr.Dataset], Suite]) -> Suite:
 def _motions(dataset: xr.Dataset) -> dict[str, GroundMotion]:
     labels = [str(label) for label in dataset[MOTION].to_numpy()]
     texts = {
-        name: [str(one) for one in dataset[name].to_numpy()] for name in _TEXTS if name in dataset
+        name: [str(text) for text in dataset[name].to_numpy()] for name in _TEXTS if name in dataset
     }
     parts = {name: _split_samples(dataset, name, len(labels)) for name in _RAGGED_ARRAYS}
     steps = dataset["time_step"].to_numpy()
@@ -219,12 +224,14 @@ def _split_samples(dataset: xr.Dataset, name: str, count: int) -> list[np.ndarra
     if name.endswith("_pieces") and values.shape[1:] != (COEFFICIENTS,):
         msg = f"{name!r} has the shape {values.shape}"
         raise SchemaError(msg)
-    counts = [int(one) for one in dataset[_RAGGED_ARRAYS[name][1]].to_numpy()]
+    counts = [int(size) for size in dataset[_RAGGED_ARRAYS[name][1]].to_numpy()]
     if min(counts) < 0 or sum(counts) != len(values):
         msg = f"{name!r} has {len(values)} rows, but its counts add up to {sum(counts)}"
         raise SchemaError(msg)
     ends = np.cumsum(counts)
-    return [values[end - own : end] if own else None for own, end in zip(counts, ends, strict=True)]
+    return [
+        values[end - size : end] if size else None for size, end in zip(counts, ends, strict=True)
+    ]
 
 
 def _mapping(text: str) -> Mapping[str, Any]:

@@ -210,13 +210,13 @@ class MotionSuite(LabelledMotions):
         >>> print(suite.scaled_to(found)["1 Hz"].peak_acceleration.round(2))
         1.67 meter / second ** 2
         """
-        found = target
-        if not isinstance(found, xr.Dataset):
-            found = self.scaling_to(found, **arguments)
-        motions, verticals = scaled_motions(self, found)
+        scaling = target
+        if not isinstance(scaling, xr.Dataset):
+            scaling = self.scaling_to(scaling, **arguments)
+        motions, verticals = scaled_motions(self, scaling)
         return type(self)(
             motions, verticals=verticals, unread=self._unread, remarks=self._remarks,
-            target=compared_target(found),
+            target=compared_target(scaling),
         )  # fmt: skip
 
     def chosen_for(self, target: TargetSpectrum, count: int, **arguments: Any) -> Self:

@@ -77,7 +77,7 @@ class TargetSpectrum(metaclass=SuggestingMeta):
             checked_function(self.deviation, "periods", owner=owner, name="deviation")
         to_ratio(self.damping_ratio, owner=owner, name="damping_ratio", condition=NOT_NEGATIVE)
         limits = checked_list(self.limits, owner=owner, name="limits", of="periods")
-        rising = len(limits) == 2 and all(isinstance(one, Real) for one in limits)
+        rising = len(limits) == 2 and all(isinstance(limit, Real) for limit in limits)
         if not rising or not 0.0 <= limits[0] <= limits[1]:
             msg = (
                 f"{owner}: limits must be two periods in seconds that rise, got "
@@ -144,8 +144,10 @@ class TargetSpectrum(metaclass=SuggestingMeta):
         if standard_deviations is not None:
             deviations = np.array(
                 [
-                    to_ratio(one, owner=owner, name="standard_deviations", condition=_DEVIATION)
-                    for one in checked_list(
+                    to_ratio(
+                        deviation, owner=owner, name="standard_deviations", condition=_DEVIATION
+                    )
+                    for deviation in checked_list(
                         standard_deviations, owner=owner, name="standard_deviations", of="numbers"
                     )
                 ]
@@ -198,14 +200,14 @@ class TargetSpectrum(metaclass=SuggestingMeta):
             msg = f"{owner}: expected a dataset of rf.response_spectrum with one damping ratio"
             raise SchemaError(msg)
         moving = spectrum.isel(damping_ratio=0, period=spectrum["period"].to_numpy() > 0.0)
-        others = [dim for dim in moving.dims if dim != "period"]
+        other_dims = [dim for dim in moving.dims if dim != "period"]
         logarithm: Any = np.log(moving)
         spread = None
-        if others and math.prod(moving.sizes[dim] for dim in others) > 1:
-            spread = logarithm.std(others, ddof=1).to_numpy().tolist()
+        if other_dims and math.prod(moving.sizes[dim] for dim in other_dims) > 1:
+            spread = logarithm.std(other_dims, ddof=1).to_numpy().tolist()
         return cls.from_table(
             (moving["period"].to_numpy(), str(PERIOD.unit)),
-            (np.exp(logarithm.mean(others)).to_numpy(), str(ACCELERATION.unit)),
+            (np.exp(logarithm.mean(other_dims)).to_numpy(), str(ACCELERATION.unit)),
             standard_deviations=spread,
             damping_ratio=float(spectrum["damping_ratio"][0]),
             name=name,

@@ -55,44 +55,46 @@ class Curve:
 
     def __mul__(self, other: "Curve") -> "Curve":
         """Multiply, and put terms of too high a degree into the error."""
-        whole = np.convolve(self.coefficients, other.coefficients)
-        cut = float(np.abs(whole[DEGREE + 1 :]).sum())
+        product = np.convolve(self.coefficients, other.coefficients)
+        cut = float(np.abs(product[DEGREE + 1 :]).sum())
         error = cut + self.size * other.error + other.size * self.error
-        return Curve(whole[: DEGREE + 1], (error + _LOST * self.size * other.size) * ROUND_UP)
+        return Curve(product[: DEGREE + 1], (error + _LOST * self.size * other.size) * ROUND_UP)
 
     def inverse(self) -> "Curve":
         """Return the reciprocal; its error follows from the product with it, which should be 1."""
         first = 1.0 / float(self.coefficients[0])
-        found = np.zeros(DEGREE + 1)
-        found[0] = first
+        coefficients = np.zeros(DEGREE + 1)
+        coefficients[0] = first
         for k in range(1, DEGREE + 1):
-            found[k] = -first * float(np.dot(self.coefficients[1 : k + 1], found[k - 1 :: -1][:k]))
-        guess = Curve(found, 0.0)
+            coefficients[k] = -first * float(
+                np.dot(self.coefficients[1 : k + 1], coefficients[k - 1 :: -1][:k])
+            )
+        guess = Curve(coefficients, 0.0)
         product = self * guess
         product.coefficients[0] -= 1.0
         off = (float(np.abs(product.coefficients).sum()) + product.error) * ROUND_UP
         if not off < 0.5:
             raise StepTooLong
-        return Curve(found, guess.size * off / (1.0 - off) * ROUND_UP)
+        return Curve(coefficients, guess.size * off / (1.0 - off) * ROUND_UP)
 
 
 def constant_curve(value: float) -> Curve:
     """Return a constant curve."""
-    found = np.zeros(DEGREE + 1)
-    found[0] = value
-    return Curve(found, abs(value) * _LOST)
+    coefficients = np.zeros(DEGREE + 1)
+    coefficients[0] = value
+    return Curve(coefficients, abs(value) * _LOST)
 
 
 def curve(series: Row, error: float) -> Curve:
     """Return the curve of a series, within an error."""
-    middles = np.array([float(one) for one in series])
-    sizes = sum(float(one.abs_upper()) for one in series[DEGREE + 1 :])
-    radii = sum(float(one.rad()) for one in series[: DEGREE + 1])
+    middles = np.array([float(coefficient) for coefficient in series])
+    sizes = sum(float(coefficient.abs_upper()) for coefficient in series[DEGREE + 1 :])
+    radii = sum(float(coefficient.rad()) for coefficient in series[: DEGREE + 1])
     if middles.size <= DEGREE:
         middles = np.concatenate([middles, np.zeros(DEGREE + 1 - middles.size)])
-    kept = middles[: DEGREE + 1]
-    lost = _LOST * float(np.abs(kept).sum())
-    return Curve(kept, (error + sizes + radii + lost) * ROUND_UP)
+    leading = middles[: DEGREE + 1]
+    lost = _LOST * float(np.abs(leading).sum())
+    return Curve(leading, (error + sizes + radii + lost) * ROUND_UP)
 
 
 class StateSet(NamedTuple):
@@ -113,16 +115,22 @@ class StateSet(NamedTuple):
     def box(self, weights: Array) -> Row:
         """Enclose the states."""
         radii = self.radii(weights).tolist()
-        return [one + ball(0, each) for one, each in zip(self.centre, radii, strict=True)]
+        return [
+            component + ball(0, radius)
+            for component, radius in zip(self.centre, radii, strict=True)
+        ]
 
     def image(self, image: Row, middle: Array, error: Array, weights: Array) -> "StateSet":
         """Return the image of the set from that of the centre, and the weighted derivative.
 
         The derivative is `middle`, each element within `error`.
         """
-        centre = [one.mid() for one in image]
+        centre = [component.mid() for component in image]
         away = np.array(
-            [float((one - mid).abs_upper()) for one, mid in zip(image, centre, strict=True)]
+            [
+                float((component - mid).abs_upper())
+                for component, mid in zip(image, centre, strict=True)
+            ]
         )
         away = away / weights * ROUND_UP
         mapped_axes = middle @ self.axes
@@ -144,7 +152,7 @@ class StateSet(NamedTuple):
 
 def single_state(start: Sequence[float]) -> StateSet:
     """Return the set of one state."""
-    return StateSet([ball(one) for one in start], np.eye(SIZE), np.zeros(SIZE))
+    return StateSet([ball(component) for component in start], np.eye(SIZE), np.zeros(SIZE))
 
 
 class Step(NamedTuple):
@@ -159,29 +167,29 @@ class Step(NamedTuple):
     def image(self, share: Any) -> Row:
         """Enclose the centre at a share of the step."""
         pairs = zip(self.course.series[:SIZE], self.course.left_out[:SIZE], strict=True)
-        return [polynomial_value(series, share) + ball(0, rest) for series, rest in pairs]
+        return [polynomial_value(series, share) + ball(0, remainder) for series, remainder in pairs]
 
     def derivative(self, share: float) -> Array:
         """Return the weighted derivative by the start at a share of the step, without its error."""
-        found = self.powers[-1]
-        for one in self.powers[-2::-1]:
-            found = found * share + one
-        return found
+        total = self.powers[-1]
+        for power in self.powers[-2::-1]:
+            total = total * share + power
+        return total
 
 
 def enclose_step(
-    pads: PadBalls, contacts: Contacts, found: PadMotion, states: StateSet, weights: Array,
+    pads: PadBalls, contacts: Contacts, course: PadMotion, states: StateSet, weights: Array,
     guards: list[Guard],
 ) -> Step:  # fmt: skip
     """Enclose the image of a set in a step, :eq:`eq-proof-pads-variation`.
 
     Raises `StepTooLong` if the step must be halved.
     """
-    h = float(found.h)
+    h = float(course.h)
     radius = states.radius()
     tube = 4.0 * radius
     for _ in range(8):
-        motion = _motion(pads, found, tube * weights)
+        motion = _motion(pads, course, tube * weights)
         stiff = _stiffness(pads, contacts, motion)
         matrix, error = _weighted(stiff, h, weights)
         rate = float((np.abs(matrix).sum(axis=0) + error).sum(axis=1).max()) * ROUND_UP
@@ -196,9 +204,10 @@ def enclose_step(
     powers, defect = _variation(matrix, error)
     off = np.tile((defect.max(axis=0) + _LOST * rate) * growth * ROUND_UP, (SIZE, 1))
     curves = {
-        one: _guard(pads, contacts, one, found, motion, (tube, rate), weights) for one in guards
+        guard: _guard(pads, contacts, guard, course, motion, (tube, rate), weights)
+        for guard in guards
     }
-    return Step(found, powers, off, rate, curves)
+    return Step(course, powers, off, rate, curves)
 
 
 class _Motion(NamedTuple):
@@ -212,16 +221,16 @@ class _Motion(NamedTuple):
     deviations: Array  # bounds of the distances of members from the centre, in each coordinate
 
 
-def _motion(pads: PadBalls, found: PadMotion, deviations: Array) -> _Motion:
-    series, rest = found.series, found.left_out
+def _motion(pads: PadBalls, course: PadMotion, deviations: Array) -> _Motion:
+    series, remainder = course.series, course.left_out
     centre_height, wide = float(pads.height), float(pads.left) + float(pads.right)
     d_rotation, d_rate = float(deviations[_ROTATION]), float(deviations[_RATE])
-    rate = curve(series.rate, rest.rate + d_rate)
+    rate = curve(series.rate, remainder.rate + d_rate)
     if pads.small:
-        sine, cosine = curve(series.rotation, rest.rotation + d_rotation), constant_curve(1.0)
+        sine, cosine = curve(series.rotation, remainder.rotation + d_rotation), constant_curve(1.0)
     else:
-        sine = curve(series.sine, rest.sine + d_rotation)
-        cosine = curve(series.cosine, rest.cosine + d_rotation)
+        sine = curve(series.sine, remainder.sine + d_rotation)
+        cosine = curve(series.cosine, remainder.cosine + d_rotation)
     reach = centre_height * (1.0 if not pads.small else sine.size) + wide
     level = float(deviations[_HEIGHT]) + reach * d_rotation
     speed = (
@@ -229,10 +238,10 @@ def _motion(pads: PadBalls, found: PadMotion, deviations: Array) -> _Motion:
     )
     away = (float(pads.stiffness) * level + float(pads.damping) * speed) * ROUND_UP
     left, right = (
-        curve(one, left_out + away) if one else None
-        for one, left_out in zip(series.forces, rest.forces, strict=True)
+        curve(force, left_out + away) if force else None
+        for force, left_out in zip(series.forces, remainder.forces, strict=True)
     )
-    return _Motion(rate, sine, cosine, (left, right), curve(found.along, 0.0), deviations)
+    return _Motion(rate, sine, cosine, (left, right), curve(course.along, 0.0), deviations)
 
 
 def _stiffness(pads: PadBalls, contacts: Contacts, motion: _Motion) -> dict[tuple[int, int], Curve]:
@@ -259,7 +268,10 @@ def _stiffness(pads: PadBalls, contacts: Contacts, motion: _Motion) -> dict[tupl
         by_rotation = (lever.times(stiff) + (lever_slope * rate).times(damped)).times(-1.0)
         by = [by_rotation, lever.times(-damped), constant_curve(-stiff), constant_curve(-damped)]
         upward = [a + b for a, b in zip(upward, by, strict=True)]
-        by_moment = [lever * by_rotation + force * lever_slope, *(lever * one for one in by[1:])]
+        by_moment = [
+            lever * by_rotation + force * lever_slope,
+            *(lever * slope for slope in by[1:]),
+        ]
         moment = [a + b for a, b in zip(moment, by_moment, strict=True)]
         load = load + force * lever
     if pads.small:
@@ -270,28 +282,28 @@ def _stiffness(pads: PadBalls, contacts: Contacts, motion: _Motion) -> dict[tupl
         lever_slope = cosine.times(offset) - sine.times(centre_height)
         square = arm * arm
         inverse = (constant_curve(float(pads.inertia)) + square).inverse()
-        spin, both = rate * rate, arm * lever_slope
+        spin, arm_slope = rate * rate, arm * lever_slope
         push = motion.along + lever_slope * spin
         angular_acceleration = (load - arm * push) * inverse
         moment[_ROTATION] = (
             moment[_ROTATION]
             - lever_slope * push
             + square * spin
-            - (both * angular_acceleration).times(2.0)
+            - (arm_slope * angular_acceleration).times(2.0)
         )
-        moment[_RATE] = moment[_RATE] - (both * rate).times(2.0)
-    found = {(_SPEED, j): one for j, one in enumerate(upward)}
-    found.update({(_RATE, j): one * inverse for j, one in enumerate(moment)})
-    return found
+        moment[_RATE] = moment[_RATE] - (arm_slope * rate).times(2.0)
+    stiffness = {(_SPEED, j): slope for j, slope in enumerate(upward)}
+    stiffness.update({(_RATE, j): slope * inverse for j, slope in enumerate(moment)})
+    return stiffness
 
 
 def _weighted(stiff: dict[tuple[int, int], Curve], h: float, weights: Array) -> tuple[Array, Array]:
     """Return the coefficients of the weighted derivative of the field times h, and their errors."""
     matrix, error = np.zeros((DEGREE + 1, SIZE, SIZE)), np.zeros((SIZE, SIZE))
-    for (i, j), one in stiff.items():
+    for (i, j), slope in stiff.items():
         factor = h * weights[j] / weights[i]
-        matrix[:, i, j] = one.coefficients * factor
-        error[i, j] = (one.error + _LOST * one.size) * factor * ROUND_UP
+        matrix[:, i, j] = slope.coefficients * factor
+        error[i, j] = (slope.error + _LOST * slope.size) * factor * ROUND_UP
     for i, j in ((_ROTATION, _RATE), (_HEIGHT, _SPEED)):
         matrix[0, i, j] = h * weights[j] / weights[i]
         error[i, j] = _LOST * matrix[0, i, j]
@@ -302,40 +314,42 @@ def _variation(matrix: Array, error: Array) -> tuple[Array, Array]:
     """Return a polynomial for the derivative by the start, and its residual in its equation."""
     powers = np.zeros((VARIATION_ORDER + 1, SIZE, SIZE))
     powers[0] = np.eye(SIZE)
-    size, whole = np.abs(matrix), np.zeros((SIZE, SIZE))
+    size, sums = np.abs(matrix), np.zeros((SIZE, SIZE))
     for k in range(VARIATION_ORDER):
         count = min(k, DEGREE) + 1
         powers[k + 1] = (matrix[:count] @ powers[k - np.arange(count)]).sum(axis=0) / (k + 1)
-        whole += (size[:count] @ np.abs(powers[k - np.arange(count)])).sum(axis=0)
+        sums += (size[:count] @ np.abs(powers[k - np.arange(count)])).sum(axis=0)
     total = np.abs(powers).sum(axis=0)
     every = size.sum(axis=0) @ total
-    cut = np.maximum(every - whole, 0.0)
+    cut = np.maximum(every - sums, 0.0)
     return powers, (cut + 10.0 * _LOST * every + error @ total) * ROUND_UP
 
 
 def _guard(
-    pads: PadBalls, contacts: Contacts, guard: Guard, found: PadMotion, motion: _Motion,
+    pads: PadBalls, contacts: Contacts, guard: Guard, course: PadMotion, motion: _Motion,
     bounds: tuple[float, float], weights: Array,
 ) -> tuple[Curve, Curve]:  # fmt: skip
     """Return a guard and its derivative by the share, as curves."""
     tube, rate = bounds
-    h = float(found.h)
-    d_rotation, d_rate, d_height, d_speed = (float(one) for one in motion.deviations[:4])
-    series, rest = found.series, found.left_out
+    h = float(course.h)
+    d_rotation, d_rate, d_height, d_speed = (
+        float(deviation) for deviation in motion.deviations[:4]
+    )
+    series, remainder = course.series, course.left_out
     if guard.kind == "limit":
         limit = float(pads.limits[not guard.left])
-        angle = curve(series.rotation, rest.rotation + d_rotation)
+        angle = curve(series.rotation, remainder.rotation + d_rotation)
         angle = angle if guard.left else -angle
         value = constant_curve(limit) + angle
-        change = curve(series.rate, rest.rate + d_rate).times(h if guard.left else -h)
+        change = curve(series.rate, remainder.rate + d_rate).times(h if guard.left else -h)
         return value, change
     i = int(not guard.left)
     centre_height, wide = float(pads.height), float(pads.left) + float(pads.right)
     spin = motion.rate.size
     reach = (centre_height * motion.sine.size + wide) * ROUND_UP
-    level_away = d_height + reach * d_rotation + rest.levels[i]
+    level_away = d_height + reach * d_rotation + remainder.levels[i]
     speed_away = (
-        d_speed + reach * d_rate + (centre_height + wide) * spin * d_rotation + rest.speeds[i]
+        d_speed + reach * d_rate + (centre_height + wide) * spin * d_rotation + remainder.speeds[i]
     )
     speed = curve(series.speeds[i], speed_away)
     if guard.kind in ("depth", "gap"):
@@ -345,15 +359,19 @@ def _guard(
     # accelerations of members differ by no more than the rate of change of their distances
     angular_away, falling_away = (float(rate * tube * weights[j] / h) for j in (_RATE, _SPEED))
     order = len(series.speeds[i])
-    sizes = (k * float(one.abs_upper()) for k, one in enumerate(series.rate))
-    angular_acceleration = angular_away + ROUND_UP * (sum(sizes) + len(series.rate) * rest.rate) / h
+    sizes = (k * float(coefficient.abs_upper()) for k, coefficient in enumerate(series.rate))
+    angular_acceleration = (
+        angular_away + ROUND_UP * (sum(sizes) + len(series.rate) * remainder.rate) / h
+    )
     away = (
         falling_away
         + reach * angular_away
         + (centre_height + wide)
         * (d_rotation * (angular_acceleration + spin * spin) + 2.0 * spin * d_rate)
     )
-    slope = curve(derivative_of(series.speeds[i]), (order * rest.speeds[i] + away * h) * ROUND_UP)
+    slope = curve(
+        derivative_of(series.speeds[i]), (order * remainder.speeds[i] + away * h) * ROUND_UP
+    )
     if guard.kind == "rise":
         return speed, slope
     stiff, damped = float(pads.stiffness), float(pads.damping)

@@ -39,7 +39,7 @@ class Dual:
 
     def __neg__(self) -> "Dual":
         """Return the opposite."""
-        return Dual(-self.value, [-one for one in self.slope])
+        return Dual(-self.value, [-change for change in self.slope])
 
     def __sub__(self, other: Any) -> "Dual":
         """Take away."""
@@ -55,7 +55,7 @@ class Dual:
             a, b = self.value, other.value
             slope = [x * b + a * y for x, y in zip(self.slope, other.slope, strict=True)]
             return Dual(a * b, slope)
-        return Dual(self.value * other, [one * other for one in self.slope])
+        return Dual(self.value * other, [change * other for change in self.slope])
 
     __rmul__ = __mul__
 
@@ -70,18 +70,18 @@ class Dual:
     def sin(self) -> "Dual":
         """Return the sine."""
         cosine = self.value.cos()
-        return Dual(self.value.sin(), [cosine * one for one in self.slope])
+        return Dual(self.value.sin(), [cosine * change for change in self.slope])
 
     def cos(self) -> "Dual":
         """Return the cosine."""
         sine = self.value.sin()
-        return Dual(self.value.cos(), [-sine * one for one in self.slope])
+        return Dual(self.value.cos(), [-sine * change for change in self.slope])
 
 
 def independent_duals(state: Row) -> list[Dual]:
     """Return a state as duals, the independent variables of gradients."""
-    one = [[ball(int(i == j)) for j in range(SIZE)] for i in range(SIZE)]
-    return [Dual(value, one[i]) for i, value in enumerate(state)]
+    unit = [[ball(int(i == j)) for j in range(SIZE)] for i in range(SIZE)]
+    return [Dual(value, unit[i]) for i, value in enumerate(state)]
 
 
 class GroundAcceleration(NamedTuple):
@@ -147,8 +147,8 @@ _GUARDS: Final = {
 
 def guards_of(contacts: Contacts) -> list[Guard]:
     """Return the guards of some contacts, :eq:`eq-guards`, and those of overturning."""
-    found = [Guard(kind, left) for left in (True, False) for kind in _GUARDS[contacts.of(left)]]
-    return [*found, Guard("limit", True), Guard("limit", False)]
+    guards = [Guard(kind, left) for left in (True, False) for kind in _GUARDS[contacts.of(left)]]
+    return [*guards, Guard("limit", True), Guard("limit", False)]
 
 
 class RotationTerms(NamedTuple):
@@ -191,14 +191,14 @@ def reaction(pads: PadBalls, left: bool, at: CornerMotion) -> Any:
 
 def pivot(pads: PadBalls, contacts: Contacts) -> int:
     """Return the pivot: which point of the base is held."""
-    left, right = (contacts.of(one) < RELAXING for one in (True, False))
+    left, right = (contacts.of(side) < RELAXING for side in (True, False))
     return pivot_of(pads.rule, left, right, 0.0, 0.0)
 
 
 def pivot_offset(pads: PadBalls, contacts: Contacts) -> Ball:
     """Return e, from below the centre of mass to the held point."""
-    found = pivot(pads, contacts)
-    if found == PIVOT_CENTRE:
+    held = pivot(pads, contacts)
+    if held == PIVOT_CENTRE:
         return pads.middle
     return pads.right if contacts.left >= RELAXING else -pads.left
 
@@ -294,26 +294,26 @@ def _lift_off(
 ) -> ContactChange:
     """Return the state after a corner has lifted off."""
     at, own_guard = corner_motion(pads, left, state), Guard("gap", left)
-    own = CLEAR
+    contact = CLEAR
     if contacts.of(left) == TOUCHING and pads.damping > 0:
         depth = (pads.rest - at.level).value
         require(
             depth > pads.rest * _SEPARATION, "a corner that leaves its pad at the pad's own level"
         )
-        own, own_guard = RELAXING, Guard("slack", left)
-    other = contacts.of(not left)
-    if other == TOUCHING:
+        contact, own_guard = RELAXING, Guard("slack", left)
+    opposite = contacts.of(not left)
+    if opposite == TOUCHING:
         require(
             reaction(pads, not left, corner_motion(pads, not left, state)).value > 0,
             "both corners let go at once",
         )
-    elif other in (ENGAGING, LEAVING):
-        other = RELAXING
-    after = Contacts(own, other) if left else Contacts(other, own)
+    elif opposite in (ENGAGING, LEAVING):
+        opposite = RELAXING
+    after = Contacts(contact, opposite) if left else Contacts(opposite, contact)
     if after.in_flight:
         sway = arm(pads, contacts, state[0]) * state[1]
         state = [*state[:4], sway]
-        if own == RELAXING:
+        if contact == RELAXING:
             rate = _guard_rate(pads, after, Guard("press", left), state, ground)
             require(rate < 0, "a corner that slides on its pad as it leaves")
         return ContactChange(state, after, (own_guard,), 0)
@@ -322,7 +322,7 @@ def _lift_off(
     state = _project_momentum(pads, contacts, after, state)
     at = corner_motion(pads, left, state)
     require(at.speed.value > 0, "a corner that its restraint keeps from leaving")
-    if own == CLEAR:
+    if contact == CLEAR:
         return ContactChange(state, after, (own_guard,), 0)
     force = reaction(pads, left, at).value
     if force > 0:
@@ -333,13 +333,13 @@ def _lift_off(
 
 def _land(pads: PadBalls, contacts: Contacts, left: bool, state: list[Dual]) -> ContactChange:
     """Return the state after a corner has landed, or is pressed again by its pad."""
-    lands, other = contacts.of(left) == CLEAR, contacts.of(not left)
-    if lands and other == CLEAR:
+    lands, opposite = contacts.of(left) == CLEAR, contacts.of(not left)
+    if lands and opposite == CLEAR:
         level = guard_value(pads, Guard("gap", not left), state).value
         require(abs(level) > pads.rest * (2 * _SAME_LANDING), "both corners land at once")
-    if other == LEAVING:
-        other = RELAXING
-    after = Contacts(TOUCHING, other) if left else Contacts(other, TOUCHING)
+    if opposite == LEAVING:
+        opposite = RELAXING
+    after = Contacts(TOUCHING, opposite) if left else Contacts(opposite, TOUCHING)
     before = corner_motion(pads, left, state).speed.value
     was_in_flight = contacts.in_flight
     changes_pivot = was_in_flight or pivot(pads, after) != pivot(pads, contacts)
@@ -377,8 +377,8 @@ def _apply_impact(pads: PadBalls, after: Contacts, left: bool, state: list[Dual]
     if at.speed.value > 0:
         return state
     require(at.speed.value < 0, "a landing that hardly touches its pad")
-    one = state[0] * ZERO + 1
-    answer = one * at.lever / (one * (reach * reach) + pads.inertia)
+    unit = state[0] * ZERO + 1
+    answer = unit * at.lever / (unit * (reach * reach) + pads.inertia)
     impulse = at.speed * (pads.restitutions[not left] - 1) / (at.lever * answer + 1)
     return [state[0], state[1] + impulse * answer, state[2], state[3] + impulse, state[4]]
 
@@ -387,7 +387,7 @@ def _guard_rate(
     pads: PadBalls, contacts: Contacts, guard: Guard, state: list[Dual], ground: GroundAcceleration
 ) -> Ball:
     """Return the rate of change of a guard in a state, as a ball."""
-    at = independent_duals([one.value for one in state])
+    at = independent_duals([component.value for component in state])
     return rate_of_change(guard_value(pads, guard, at), state_rates(pads, contacts, at, ground))
 
 

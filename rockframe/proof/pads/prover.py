@@ -75,9 +75,10 @@ class PadProver:
         Raises `Undecided` if that cannot be proved.
         """
         state = self.states.box(self.weights)
-        for one in guards_of(self.contacts):
+        for guard in guards_of(self.contacts):
             require(
-                guard_value(self.pads, one, state) > 0, "the contacts at the start are not resolved"
+                guard_value(self.pads, guard, state) > 0,
+                "the contacts at the start are not resolved",
             )
         ground = self.ground
         last = ground.count + self.settling_time / ground.still_step
@@ -131,17 +132,17 @@ class PadProver:
     def _advance(self, ground: GroundPiece, h: Ball) -> bool:
         """Make a step, or a part of it up to a change of contact; give whether it was whole."""
         pads, contacts = self.pads, self.contacts
-        sizes = tuple(float(one) for one in self.weights)
-        found = enclose_motion(pads, contacts, ground, self.states.centre, h, sizes, self.margin)
-        self._set_margin(found.left_out, sizes)
-        made = enclose_step(pads, contacts, found, self.states, self.weights, guards_of(contacts))
+        sizes = tuple(float(weight) for weight in self.weights)
+        course = enclose_motion(pads, contacts, ground, self.states.centre, h, sizes, self.margin)
+        self._set_margin(course.left_out, sizes)
+        made = enclose_step(pads, contacts, course, self.states, self.weights, guards_of(contacts))
         guard, place = self._first_guard(made)
         share = ball(1)
         if guard is not None:
             share = _root(_series(pads, guard, made), place)
         until = min(float(share), 1.0)
-        for one, (value, change) in made.curves.items():
-            starts_at_zero, ends_at_zero = one in self.zero_guards, one == guard
+        for key, (value, change) in made.curves.items():
+            starts_at_zero, ends_at_zero = key in self.zero_guards, key == guard
             if not _positive(
                 value, change, until, starts_at_zero=starts_at_zero, ends_at_zero=ends_at_zero
             ):
@@ -158,7 +159,7 @@ class PadProver:
     def _set_margin(self, left_out: Series, sizes: tuple[float, ...]) -> None:
         """Choose the margin of the next series from the remainders of this one."""
         rests = zip(left_out[:SIZE], sizes, strict=True)
-        lost = max(float(rest) / size for rest, size in rests) * 2.0 ** bits()
+        lost = max(float(remainder) / size for remainder, size in rests) * 2.0 ** bits()
         if lost > _LOST_BITS:
             self.margin = min(self.margin + 8, 96)
         elif lost < 1.0 / _LOST_BITS:
@@ -197,21 +198,21 @@ class PadProver:
         self, ground: GroundPiece, h: Ball, states: StateSet, guard: Guard, rate: float
     ) -> None:
         """Map a set through a change of contact of all its members, :eq:`eq-proof-pads-event`."""
-        whole = self._enclose_change(ground, h, states.box(self.weights), guard, rate)
+        change = self._enclose_change(ground, h, states.box(self.weights), guard, rate)
         centre = self._enclose_change(ground, h, states.centre, guard, rate)
         self.offset = self.offset + h
         if guard.kind == "limit":
-            at = self.time + whole.delay
+            at = self.time + change.delay
             self.overturning_time = at, at
             return
-        middle = np.array([[float(one) for one in row] for row in whole.slope])
-        radii = np.array([[float(one.rad()) for one in row] for row in whole.slope])
+        middle = np.array([[float(entry) for entry in row] for row in change.slope])
+        radii = np.array([[float(entry.rad()) for entry in row] for row in change.slope])
         scale = self.weights[None, :] / self.weights[:, None]
         self.states = states.image(
             centre.image, middle * scale, radii * scale * ROUND_UP, self.weights
         )
-        self.contacts, self.zero_guards = whole.after.contacts, whole.after.zero_guards
-        self.impacts += whole.after.impacts
+        self.contacts, self.zero_guards = change.after.contacts, change.after.zero_guards
+        self.impacts += change.after.impacts
 
     def _enclose_change(
         self, shaking: GroundPiece, h: Ball, box: Row, guard: Guard, rate: float
@@ -236,7 +237,7 @@ class PadProver:
         require(falling < 0, "a contact that changes as it hardly moves")
         delay = -value.value / falling
         require(window.contains(delay), "the time of a change of contact is not enclosed")
-        others = [one for one in guards_of(contacts) if one != guard]
+        others = [other for other in guards_of(contacts) if other != guard]
         self._confirm_guards(others, self.zero_guards, at, before)
         met = [a + delay * b.value for a, b in zip(box, before, strict=True)]
         met = [a.intersection(b) for a, b in zip(met, wide, strict=True)]
@@ -245,7 +246,7 @@ class PadProver:
         after = self._after_further_changes(
             change_contact(pads, contacts, guard, independent_duals(met), ground), ground
         )
-        image = [one.value for one in after.state]
+        image = [component.value for component in after.state]
         back = _inflated(
             lambda at: state_rates(pads, after.contacts, at, ground), image, window, self.weights
         )
@@ -264,11 +265,11 @@ class PadProver:
     ) -> ContactChange:
         """Carry out further changes of contact that follow at the same instant."""
         for _ in range(_MAX_CHANGES):
-            state = [one.value for one in after.state]
+            state = [component.value for component in after.state]
             waiting = [
-                one
-                for one in guards_of(after.contacts)
-                if one not in after.zero_guards and guard_value(self.pads, one, state) < 0
+                further
+                for further in guards_of(after.contacts)
+                if further not in after.zero_guards and guard_value(self.pads, further, state) < 0
             ]
             if not waiting:
                 return after
@@ -284,25 +285,25 @@ class PadProver:
     def _ground_at(self, ground: GroundPiece, time: Ball) -> GroundAcceleration:
         """Return the ground at a time from now, a ball, which may be in both intervals [s]."""
         left = self.ground.length(self.k) - self.offset
-        found = ground.at(time)
+        acceleration = ground.at(time)
         if not time < left:
-            found = found.union(self.ground.ground(self.k + 1).at(time - left))
-        return GroundAcceleration(found.along[0], found.normal[0])
+            acceleration = acceleration.union(self.ground.ground(self.k + 1).at(time - left))
+        return GroundAcceleration(acceleration.along[0], acceleration.normal[0])
 
     def _confirm_guards(
         self, guards: list[Guard], zero_guards: tuple[Guard, ...], at: list[Dual], rates: list[Dual]
     ) -> None:
         """Prove that guards are positive, or rise from zero, while members change one by one."""
-        for one in guards:
-            value = guard_value(self.pads, one, at)
+        for guard in guards:
+            value = guard_value(self.pads, guard, at)
             require(
-                value.value > 0 or (one in zero_guards and rate_of_change(value, rates) > 0),
+                value.value > 0 or (guard in zero_guards and rate_of_change(value, rates) > 0),
                 "the contacts about a change are not resolved",
             )
 
     def _widened(self, slope: Matrix, near: Ball) -> Matrix:
         """Widen a derivative by the motion of members between their change and the centre's."""
-        scale = [ball(float(one)) for one in self.weights]
+        scale = [ball(float(weight)) for weight in self.weights]
         beside = [
             [ball(int(i == j)) + near * scale[i] / scale[j] for j in range(SIZE)]
             for i in range(SIZE)
@@ -345,7 +346,7 @@ def _inflated(rates: Callable[[list[Any]], list[Any]], box: Row, window: Ball, w
     """Enclose all states that a box passes through in a window of time [s]."""
     grown = box
     for _ in range(12):
-        flow = [one.value for one in rates(independent_duals(grown))]
+        flow = [component.value for component in rates(independent_duals(grown))]
         reached = [a + window * b for a, b in zip(box, flow, strict=True)]
         if all(a.contains(b) for a, b in zip(grown, reached, strict=True)):
             return reached
@@ -361,11 +362,11 @@ def _saltation(
     after: ContactChange, before: list[Any], later: list[Any], guarded: Any, falling: Ball
 ) -> Matrix:
     """Return the saltation matrix: the derivative of a change by the state, at one fixed time."""
-    reset = [one.slope for one in after.state]
-    speeds = [one.value for one in before]
+    reset = [component.slope for component in after.state]
+    speeds = [component.value for component in before]
     jump = [
-        one.value - sum((a * b for a, b in zip(row, speeds, strict=True)), ZERO)
-        for one, row in zip(later, reset, strict=True)
+        component.value - sum((a * b for a, b in zip(row, speeds, strict=True)), ZERO)
+        for component, row in zip(later, reset, strict=True)
     ]
     return [
         [row[j] + jump[i] * guarded.slope[j] / falling for j in range(SIZE)]
@@ -375,7 +376,7 @@ def _saltation(
 
 def _norm(rates: list[Any], weights: Any) -> float:
     """Bound the norm of the weighted derivative of the field."""
-    sizes = np.array([[float(one.abs_upper()) for one in row.slope] for row in rates])
+    sizes = np.array([[float(derivative.abs_upper()) for derivative in row.slope] for row in rates])
     return float((sizes * weights[None, :] / weights[:, None]).sum(axis=1).max()) * ROUND_UP
 
 
@@ -387,14 +388,14 @@ def _positive(
     powers = np.arange(of.size)
     curvature = float((np.abs(of) * powers * np.maximum(powers - 1, 0)).sum()) * ROUND_UP
     slope_change = float((np.abs(slopes) * powers).sum()) * ROUND_UP
-    own = (of * powers)[1:]
+    derivative = (of * powers)[1:]
     edges = [(until * i / _PIECES, until * (i + 1) / _PIECES, 0) for i in range(_PIECES)]
     lost = 1e-14 * (value.size + change.size)
     down = until
     while edges:  # from the last piece to the first
         begin, end, depth = edges.pop()
         middle, half = 0.5 * (begin + end), 0.5 * (end - begin) * ROUND_UP
-        tilt = abs(float(np.polynomial.polynomial.polyval(middle, own)))
+        tilt = abs(float(np.polynomial.polynomial.polyval(middle, derivative)))
         least = float(np.polynomial.polynomial.polyval(middle, of)) - half * (
             tilt + half * curvature
         )
@@ -415,19 +416,19 @@ def _positive(
 
 def _series(pads: PadBalls, guard: Guard, made: Step) -> Row:
     """Return the series of a guard over a step."""
-    found, i = made.course.series, int(not guard.left)
+    series, i = made.course.series, int(not guard.left)
     if guard.kind == "limit":
         sign = 1 if guard.left else -1
-        first, *others = found.rotation
-        return [pads.limits[i] + sign * first, *(sign * one for one in others)]
+        first, *others = series.rotation
+        return [pads.limits[i] + sign * first, *(sign * term for term in others)]
     if guard.kind in ("depth", "gap"):
         sign = 1 if guard.kind == "gap" else -1
-        first, *others = found.levels[i]
-        return [sign * (first - pads.rest), *(sign * one for one in others)]
+        first, *others = series.levels[i]
+        return [sign * (first - pads.rest), *(sign * term for term in others)]
     if guard.kind == "rise":
-        return found.speeds[i]
+        return series.speeds[i]
     sign = -1 if guard.kind == "slack" else 1
-    return [sign * one for one in found.forces[i]]
+    return [sign * force for force in series.forces[i]]
 
 
 def _root(series: Row, place: float) -> Ball:
@@ -435,9 +436,9 @@ def _root(series: Row, place: float) -> Ball:
     at = ball(place)
     for _ in range(8):
         value, slope = ZERO, ZERO
-        for one in reversed(series):
+        for coefficient in reversed(series):
             slope = slope * at + value
-            value = value * at + one.mid()
+            value = value * at + coefficient.mid()
         if not float(slope.mid()):
             break
         at = (at - value.mid() / slope.mid()).mid()

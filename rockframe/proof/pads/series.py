@@ -68,7 +68,7 @@ def recursion(
 
     `enough` is called with the order and the series, and returns whether they are long enough.
     """
-    found = start
+    series = start
     rotation, rate, height, speed, sway, sine, cosine = start[:7]
     (up_left, up_right), (by_left, by_right), (on_left, on_right) = start[7:10]
     inertia, arm = start.inertia, start.arm
@@ -147,8 +147,8 @@ def recursion(
             sine.append(share * cosine_rate)
             cosine.append(minus * share * sine_rate)
         k += 1
-        if enough(k, found):
-            return found
+        if enough(k, series):
+            return series
 
 
 class PadMotion(NamedTuple):
@@ -175,7 +175,7 @@ def enclose_motion(
         pads.rest, offset,
     )  # fmt: skip
     ground = tuple(
-        [one * h**k for k, one in enumerate(row)]
+        [coefficient * h**k for k, coefficient in enumerate(row)]
         for row in (ground_piece.normal, ground_piece.along)
     )
     least = 2.0 ** -(bits() + margin)
@@ -189,7 +189,7 @@ def enclose_motion(
         fast, sunk = abs(float(so_far.rate[k])), abs(float(so_far.speed[k]))
         return fast < first and sunk < second and abs(float(so_far.rate[k - 1])) < first * 16
 
-    found = recursion(
+    series = recursion(
         numbers,
         contacts,
         pads.small,
@@ -199,43 +199,43 @@ def enclose_motion(
         -1,
         enough,
     )
-    order = len(found.rotation) - 1
-    sizes = [_map_corners(_size, one) for one in found]
+    order = len(series.rotation) - 1
+    sizes = [_map_corners(_size, row) for row in series]
     # bounds that the motion is to be proved not to reach
     most = [_map_corners(lambda size: size * _MARGIN + 1e-200, size) for size in sizes]
-    inertia = found.inertia
+    inertia = series.inertia
     least_inertia = float(inertia[0].lower()) / ROUND_UP
-    inertia_change = sum(float(one.abs_upper()) for one in inertia[1:]) * ROUND_UP
+    inertia_change = sum(float(coefficient.abs_upper()) for coefficient in inertia[1:]) * ROUND_UP
     low = (least_inertia - inertia_change * _MARGIN) * 0.999
     if not low > 0:
         raise StepTooLong
     bounds = Series(
         [most[0]], [most[1]], [most[2]], [most[3]], [most[4]], [min(1.0, most[5])], [1.0],
-        ([0.0], [0.0]), ([], []), tuple([one] for one in most[9]), [low],
+        ([0.0], [0.0]), ([], []), tuple([force] for force in most[9]), [low],
         [float(numbers.height) * ROUND_UP + abs(float(offset)) * ROUND_UP * min(1.0, most[5])],
     )  # fmt: skip
-    bounded_numbers = SeriesNumbers(*(_map_corners(_bound, one) for one in numbers))
+    bounded_numbers = SeriesNumbers(*(_map_corners(_bound, number) for number in numbers))
     grounds = tuple(_taylor_bounds(row) for row in ground)
-    counts = [len(one) for one in bounds]
+    counts = [len(row) for row in bounds]
     ended = recursion(
         bounded_numbers, contacts, pads.small, bounds, grounds, _bound(h), 1, lambda k, _: k > order
     )  # fmt: skip
     grown = zip(ended, counts, strict=True)
     left_out = Series(
         *(
-            _map_corners(_last_bound, one) if isinstance(one, tuple) or len(one) > count else 0.0
-            for one, count in grown
+            _map_corners(_last_bound, row) if isinstance(row, tuple) or len(row) > count else 0.0
+            for row, count in grown
         )
     )
     _confirm_bounds(sizes, most, left_out, inertia_change, least_inertia - low)
-    return PadMotion(h, ground[1], found, left_out)
+    return PadMotion(h, ground[1], series, left_out)
 
 
 def _taylor_bounds(row: Row) -> list[float]:
     """Bound the Taylor coefficients of a polynomial about all points of the step."""
-    sizes = [_bound(one) for one in row]
+    sizes = [_bound(coefficient) for coefficient in row]
     return [
-        sum(math.comb(j, k) * one for j, one in enumerate(sizes)) * ROUND_UP
+        sum(math.comb(j, k) * size for j, size in enumerate(sizes)) * ROUND_UP
         for k in range(len(sizes))
     ]
 
@@ -256,19 +256,19 @@ def _initial_series(pads: PadBalls, contacts: Contacts, start: Row, offset: Ball
     )  # fmt: skip
 
 
-def _map_corners(work: Callable[[Any], float], one: Any) -> Any:
+def _map_corners(work: Callable[[Any], float], value: Any) -> Any:
     """Return what a function makes of one thing, or of that of each corner."""
-    return tuple(map(work, one)) if isinstance(one, tuple) else work(one)
+    return tuple(map(work, value)) if isinstance(value, tuple) else work(value)
 
 
-def _bound(one: Ball) -> float:
+def _bound(value: Ball) -> float:
     """Bound the absolute value of a ball by a double."""
-    return float(abs(one).upper()) * ROUND_UP
+    return float(abs(value).upper()) * ROUND_UP
 
 
 def _size(series: Row) -> float:
     """Bound the absolute value of a polynomial over the step."""
-    return sum(float(each.abs_upper()) for each in series) * ROUND_UP
+    return sum(float(coefficient.abs_upper()) for coefficient in series) * ROUND_UP
 
 
 def _last_bound(bounds: list[float]) -> float:
@@ -281,10 +281,10 @@ def _confirm_bounds(
 ) -> None:
     """Prove that the motion reaches no bound: then all of them hold; raise TooLong otherwise."""
     firsts = zip(sizes, most, left_out, strict=True)
-    pairs = [one for i, one in enumerate(firsts) if i in (0, 1, 2, 3, 5)]
+    pairs = [triple for i, triple in enumerate(firsts) if i in (0, 1, 2, 3, 5)]
     pairs += zip(sizes[9], most[9], left_out.forces, strict=True)
-    for size, bound, rest in pairs:
-        if size and not size + rest < bound:
+    for size, bound, remainder in pairs:
+        if size and not size + remainder < bound:
             raise StepTooLong
     if not inertia_change + left_out.inertia < low:
         raise StepTooLong

@@ -114,8 +114,8 @@ _DTYPES: Final = {bool: "bool", int: "int64", str: "str"}
 
 def _row(name: str, dims: tuple[str, ...], meaning: str | tuple[str, type]) -> Variable:
     if isinstance(meaning, str):
-        found = _WITH_UNIT.fullmatch(meaning)
-        words, unit = (meaning, Unit.ONE) if found is None else (found[1], Unit(found[2]))
+        match = _WITH_UNIT.fullmatch(meaning)
+        words, unit = (meaning, Unit.ONE) if match is None else (match[1], Unit(match[2]))
         return Variable(name, dims, unit, words)
     words, kind = meaning
     if issubclass(kind, IntEnum):
