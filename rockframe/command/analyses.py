@@ -73,15 +73,15 @@ _STUDY_TABLE_KIND: Final = table_kind(
 
 def execute_study(arguments: argparse.Namespace, answer: Answer) -> int:
     """Run a study, or the rest of an interrupted one."""
-    found = read_study(arguments.study)
-    if arguments.output is None and found.output is not None:
-        arguments.output = str(found.output)
-    outputs = Outputs(arguments, found.files, answer, output=STUDY_KIND, csv=_STUDY_TABLE_KIND)
-    store = store_from(arguments) or found.store
-    answer.add_context("Scene", part_names(found.system))
+    study = read_study(arguments.study)
+    if arguments.output is None and study.output is not None:
+        arguments.output = str(study.output)
+    outputs = Outputs(arguments, study.files, answer, output=STUDY_KIND, csv=_STUDY_TABLE_KIND)
+    store = store_from(arguments) or study.store
+    answer.add_context("Scene", part_names(study.system))
     try:
-        given = {"store": store, **found.arguments}
-        runs = run_analysis(sweep, found, found.motions, given, arguments)
+        given = {"store": store, **study.arguments}
+        runs = run_analysis(sweep, study, study.motions, given, arguments)
         answer.add_result("Verdict", runs.attrs["verdict"])
         answer.add_numbers(runs)
         values = table(runs)
@@ -91,7 +91,7 @@ def execute_study(arguments: argparse.Namespace, answer: Answer) -> int:
         outputs.write_table(values)
         outputs.write_result(runs)
     except StudyError as problem:
-        raise found.at_lines(problem) from problem
+        raise study.at_lines(problem) from problem
     except KeyboardInterrupt:
         _print_how_to_continue(store, arguments.typed)
         raise
@@ -121,17 +121,17 @@ _MAX_FIRST_SCALES: Final = 80
 
 def execute_critical(arguments: argparse.Namespace, answer: Answer) -> int:
     """Find the least scale that overturns, and report the intensity at this scale."""
-    found = scene_from(arguments, needs_motion=True)
-    outputs = Outputs(arguments, found.files, answer, output=_CRITICAL_KIND, picture=PICTURE_KIND)
+    scene = scene_from(arguments, needs_motion=True)
+    outputs = Outputs(arguments, scene.files, answer, output=_CRITICAL_KIND, picture=PICTURE_KIND)
     values: dict[str, Any] = {
         "intensity": _DEFAULT_INTENSITY,
         **typed_options(arguments, "largest", "runs", "intensity", "period"),
-        **arguments_accepted_by(critical_scale, found.run),
+        **arguments_accepted_by(critical_scale, scene.run),
     }
     if arguments.runs is not None:
         values["scales"] = max(2, min(arguments.runs, _MAX_FIRST_SCALES))
-    dataset = run_analysis(critical_scale, found, found.motion, values, arguments)
-    answer.add_context("Scene", f"{part_names(found.system)} ({dataset.attrs['model']})")
+    dataset = run_analysis(critical_scale, scene, scene.motion, values, arguments)
+    answer.add_context("Scene", f"{part_names(scene.system)} ({dataset.attrs['model']})")
     answer.add_context("Motion", motion_words(dataset.attrs))
     answer.add_result("Verdict", dataset.attrs["verdict"])
     measure = dataset[dataset.attrs["intensity"]]
@@ -150,20 +150,20 @@ _NUMBER_START: Final = re.compile(r"[-+]?\.?\d")
 
 def _scene_and_motions(arguments: argparse.Namespace) -> StudyDescription:
     """Read a scene or a study; motions, scales and runs that were typed replace those in it."""
-    found = read_study(arguments.scene, needs_axes=False)
+    study = read_study(arguments.scene, needs_axes=False)
     if not arguments.records:
         refuse_reading_options(arguments, "name records after the scene")
     else:
         suite = suite_from(arguments.records, arguments)
-        files = (*found.files, *map(Path, arguments.records))
-        found = replace(found, motions=dict(suite.items()), files=files)
-    if found.motions is None:
+        files = (*study.files, *map(Path, arguments.records))
+        study = replace(study, motions=dict(suite.items()), files=files)
+    if study.motions is None:
         raise FileError(arguments.scene, _NO_MOTIONS)
-    values = run_from(found.arguments, arguments)
+    values = run_from(study.arguments, arguments)
     if arguments.scales is not None:
         scales, _ = parse_numbers(arguments.scales, "--scales", "0.25:4:0.25")
         values[AXES] = {**values.get(AXES, {}), SCALE: scales}
-    return replace(found, arguments=values, store=store_from(arguments) or found.store)
+    return replace(study, arguments=values, store=store_from(arguments) or study.store)
 
 
 def _typed_intensity(arguments: argparse.Namespace, function: Callable[..., Any]) -> dict[str, Any]:
@@ -203,26 +203,26 @@ _CAPACITY_COLUMNS: Final = ("capacity_scale", "flip_count")
 
 def execute_ida(arguments: argparse.Namespace, answer: Answer) -> int:
     """Scale motions until they overturn, and report the capacity under each."""
-    found = _scene_and_motions(arguments)
+    study = _scene_and_motions(arguments)
     kinds = {"output": _IDA_KIND, "picture": PICTURE_KIND, "csv": _CAPACITY_TABLE_KIND}
-    outputs = Outputs(arguments, found.files, answer, **kinds)
-    axes = {**found.arguments.get(AXES, {})}
-    if CASES in found.arguments:
+    outputs = Outputs(arguments, study.files, answer, **kinds)
+    axes = {**study.arguments.get(AXES, {})}
+    if CASES in study.arguments:
         words = "a dynamic analysis has axes, and no table of cases"
         raise FileError(arguments.scene, f"{words}; 'fragility' fits each structure")
-    if KNOWN in found.arguments:
+    if KNOWN in study.arguments:
         raise FileError(arguments.scene, f"a dynamic analysis takes no {KNOWN!r} stores")
     values: dict[str, Any] = {
         "intensity": _DEFAULT_INTENSITY,
-        "store": found.store,
-        **arguments_accepted_by(incremental_dynamic_analysis, found.arguments),
+        "store": study.store,
+        **arguments_accepted_by(incremental_dynamic_analysis, study.arguments),
         **({SCALE: axes.pop(SCALE)} if SCALE in axes else {}),
         AXES: axes,
         **_typed_intensity(arguments, incremental_dynamic_analysis),
     }
-    dataset = run_analysis(incremental_dynamic_analysis, found, found.motions, values, arguments)
+    dataset = run_analysis(incremental_dynamic_analysis, study, study.motions, values, arguments)
     answer.add_result("Verdict", dataset.attrs["verdict"])
-    answer.add_context("Scene", part_names(found.system))
+    answer.add_context("Scene", part_names(study.system))
     fitted = fragility(dataset, dataset.attrs["intensity"], trials="capacities",
                        **typed_options(arguments, "period"))  # fmt: skip
     answer.add_result("Fit", fitted.attrs["verdict"])
@@ -244,19 +244,19 @@ _DEFAULT_SCALES: Final = [0.25 * k for k in range(1, 17)]
 def execute_fragility(arguments: argparse.Namespace, answer: Answer) -> int:
     """Run a scene under many motions, or read finished runs, and fit fragilities."""
     known = is_result(arguments.scene)
-    found = None if known else _scene_and_motions(arguments)
-    read = [arguments.scene, *arguments.records] if found is None else found.files
+    study = None if known else _scene_and_motions(arguments)
+    read = [arguments.scene, *arguments.records] if study is None else study.files
     outputs = Outputs(arguments, read, answer, output=_FRAGILITY_KIND, picture=PICTURE_KIND)
-    if found is None:
+    if study is None:
         runs = _runs_of_study(arguments)
     else:
-        values: dict[str, Any] = {"store": found.store, **found.arguments}
+        values: dict[str, Any] = {"store": study.store, **study.arguments}
         if AXES not in values and CASES not in values:
             values[AXES] = {SCALE: _DEFAULT_SCALES}
         try:
-            runs = run_analysis(sweep, found, found.motions, values, arguments)
+            runs = run_analysis(sweep, study, study.motions, values, arguments)
         except StudyError as problem:
-            raise found.at_lines(problem) from problem
+            raise study.at_lines(problem) from problem
     try:
         dataset = fragility(runs, **_typed_intensity(arguments, fragility))
     except StudyError as problem:
@@ -271,8 +271,8 @@ def execute_fragility(arguments: argparse.Namespace, answer: Answer) -> int:
     if "median_intensity" in dataset and dataset["median_intensity"].dims == ("limit_state",):
         for state, row in dataset.groupby("limit_state", squeeze=False):
             answer.add_text(_limit_state_line(str(state), row.squeeze("limit_state")))
-    if found is not None:
-        answer.add_context("Scene", part_names(found.system))
+    if study is not None:
+        answer.add_context("Scene", part_names(study.system))
     answer.add_context("Runs", str(runs.attrs["verdict"]))
     return _finish_analysis(dataset, arguments, answer, outputs, runs)
 
@@ -313,40 +313,40 @@ _CONSTRUCTOR_KEYS: Final = ("type", "constructor")
 
 def execute_map(arguments: argparse.Namespace, answer: Answer) -> int:
     """Run pulses of all amplitudes and frequencies, and report which of them overturn."""
-    found = read_scene(arguments.scene)
-    outputs = Outputs(arguments, found.files, answer, output=_MAP_KIND, picture=PICTURE_KIND)
+    scene = read_scene(arguments.scene)
+    outputs = Outputs(arguments, scene.files, answer, output=_MAP_KIND, picture=PICTURE_KIND)
     values: dict[str, Any] = {
         "store": store_from(arguments),
-        **arguments_accepted_by(overturning_map, run_from(found.run, arguments)),
+        **arguments_accepted_by(overturning_map, run_from(scene.run, arguments)),
         "amplitude": parse_numbers(arguments.amplitude, "--amplitude", "1:10:0.5 m/s^2"),
         "frequency": parse_numbers(arguments.frequency, "--frequency", "0.5:4:0.25 Hz"),
     }
-    pulse, words = _pulse(found, arguments.pulse)
-    dataset = run_analysis(overturning_map, found, pulse, values, arguments)
+    pulse, words = _pulse(scene, arguments.pulse)
+    dataset = run_analysis(overturning_map, scene, pulse, values, arguments)
     answer.add_result("Verdict", dataset.attrs["verdict"])
-    answer.add_context("Scene", f"{part_names(found.system)} ({dataset.attrs['model']})")
+    answer.add_context("Scene", f"{part_names(scene.system)} ({dataset.attrs['model']})")
     answer.add_context("Pulse", words)
     answer.add_text("\n".join(_boundary_lines(dataset)))
     return _finish_analysis(dataset, arguments, answer, outputs)
 
 
-def _pulse(found: SceneDescription, name: str | None) -> tuple[Any, str]:
+def _pulse(scene: SceneDescription, name: str | None) -> tuple[Any, str]:
     """Return the pulse that was typed, else that of the scene, and its name."""
-    known = [one for one in CONSTRUCTORS if _has_axes(one)]
+    known = [constructor for constructor in CONSTRUCTORS if _has_axes(constructor)]
     if name is not None and name not in known:
         listed = f"{suggestion(name, known)} There are {', '.join(known)}"
         msg = f"--pulse: {name!r} is no pulse of an amplitude and a frequency alone{listed}"
         raise ComponentError(msg)
-    motion = found.motion
+    motion = scene.motion
     described = {} if motion is None else motion.to_dict()
     if name is None and set(_MAP_AXES) <= set(described):
-        others = {
+        values = {
             key: value
             for key, value in described.items()
             if key not in (*_MAP_AXES, *_CONSTRUCTOR_KEYS)
         }
         words = str(described["constructor"]).replace("_", " ")
-        return motion, ", ".join([words, *(f"{key}: {value:g}" for key, value in others.items())])
+        return motion, ", ".join([words, *(f"{key}: {value:g}" for key, value in values.items())])
     name = name or _DEFAULT_PULSE
     return getattr(GroundMotion, name), name.replace("_", " ")
 
@@ -355,7 +355,7 @@ def _has_axes(name: str) -> bool:
     """Whether a constructor needs only an amplitude and a frequency."""
     taken = arguments_of(getattr(GroundMotion, name))
     return set(_MAP_AXES) <= set(taken) and not any(
-        needed for one, needed in taken.items() if one not in _MAP_AXES
+        needed for argument, needed in taken.items() if argument not in _MAP_AXES
     )
 
 
@@ -364,10 +364,12 @@ def _boundary_lines(dataset: xr.Dataset) -> list[str]:
     unit = dataset["amplitude"].attrs["units"]
     lines = [f"  frequency [Hz]   boundaries of overturning [{unit}]"]
     for number, frequency in enumerate(dataset["frequency"].to_numpy()):
-        one = dataset.isel(frequency=number)
-        ends = zip(one["amplitude_above"].to_numpy(), one["impacts_above"].to_numpy(), strict=True)
+        part = dataset.isel(frequency=number)
+        ends = zip(
+            part["amplitude_above"].to_numpy(), part["impacts_above"].to_numpy(), strict=True
+        )
         text = [f"{at:.4g} {_boundary_label(impacts)}" for at, impacts in ends if at == at]
-        overturned = overturns(one).to_numpy()
+        overturned = overturns(part).to_numpy()
         missing = int(np.isnan(overturned).sum())
         verdict = "overturns" if (overturned == 1.0).any() else "stands"
         text = text or [f"none: {verdict} throughout" if missing < overturned.size else "none"]

@@ -62,12 +62,12 @@ class Answer:
         if len(values) <= _MAX_ROWS:
             self.add_text(format_table(values))
 
-    def add_numbers(self, found: "xr.Dataset") -> None:
+    def add_numbers(self, dataset: "xr.Dataset") -> None:
         """Add the numbers of a result with their units: all variables but histories."""
         self._numbers |= {
-            str(name): _json_variable(one)
-            for name, one in found.variables.items()
-            if not _HISTORY_DIMS & {*one.dims}
+            str(name): _json_variable(variable)
+            for name, variable in dataset.variables.items()
+            if not _HISTORY_DIMS & {*variable.dims}
         }
 
     def add_file(self, title: str, path: object) -> None:
@@ -78,8 +78,8 @@ class Answer:
     def set_stdout_file(self, data: bytes) -> None:
         """Keep the one file that goes to the standard output."""
         if self.as_json or self.data is not None:
-            other = "the answer in JSON" if self.as_json else "another file"
-            words = f"{other} goes to the standard output already; name a file instead of '-'"
+            occupant = "the answer in JSON" if self.as_json else "another file"
+            words = f"{occupant} goes to the standard output already; name a file instead of '-'"
             raise FileError(STREAM, words)
         if is_terminal(sys.stdout) and b"\0" in data:
             words = "the standard output is a terminal, which shows no such file; name one"
@@ -98,15 +98,17 @@ class Answer:
         ]  # fmt: skip
         if self._verbose:
             lines += [
-                f"  {name}: {_format_number(one)}"
-                for name, one in self._numbers.items()
-                if "dims" not in one and one["value"] is not None
+                f"  {name}: {_format_number(number)}"
+                for name, number in self._numbers.items()
+                if "dims" not in number and number["value"] is not None
             ]
         return "".join(f"{line}\n" for line in lines)
 
     def as_json_text(self, code: int, error: str = "") -> str:
         """Return the answer as a JSON object."""
-        files = {title: one[0] if len(one) == 1 else one for title, one in self._files.items()}
+        files = {
+            title: paths[0] if len(paths) == 1 else paths for title, paths in self._files.items()
+        }
         fields = {
             **self._fields,
             **({"numbers": self._numbers} if self._numbers else {}),
@@ -131,9 +133,9 @@ def format_table(values: "pd.DataFrame") -> str:
     text = values.to_string(**options)
     if max(map(len, text.splitlines()), default=0) <= _MAX_WIDTH:
         return text
-    titles = [_title_lines(str(one)) for one in values]
+    titles = [_title_lines(str(column)) for column in values]
     depth = max(map(len, titles))
-    lines = [tuple([""] * (depth - len(one)) + one) for one in titles]
+    lines = [tuple([""] * (depth - len(title)) + title) for title in titles]
     wrapped = values.set_axis(type(values)(lines).set_index([*range(depth)]).index, axis=1)
     wrapped = wrapped.rename_axis(columns=[None] * depth)
     text = wrapped.to_string(**options, line_width=_MAX_WIDTH, sparsify=False)
@@ -148,17 +150,17 @@ def _title_lines(title: str) -> list[str]:
     return [*lines, f"[{unit}"] if bracket else lines
 
 
-def _json_variable(one: "xr.Variable") -> dict[str, Any]:
+def _json_variable(variable: "xr.Variable") -> dict[str, Any]:
     """Return a value with its unit and, of an array, its dimensions."""
     import numpy as np
 
-    values = np.asarray(one)
-    found: dict[str, Any] = {"value": _json_value(_flag_words(values, one.attrs))}
-    if "units" in one.attrs:
-        found["unit"] = str(one.attrs["units"])
+    values = np.asarray(variable)
+    entry: dict[str, Any] = {"value": _json_value(_flag_words(values, variable.attrs))}
+    if "units" in variable.attrs:
+        entry["unit"] = str(variable.attrs["units"])
     if values.ndim:
-        found["dims"] = [str(dim) for dim in one.dims]
-    return found
+        entry["dims"] = [str(dim) for dim in variable.dims]
+    return entry
 
 
 def _flag_words(values: Any, attributes: Mapping[str, Any]) -> Any:
@@ -180,15 +182,15 @@ def _json_value(value: Any) -> Any:
     if hasattr(value, "tolist"):  # of numpy
         value = value.tolist()
     if isinstance(value, list | tuple):
-        return [_json_value(one) for one in value]
+        return [_json_value(item) for item in value]
     if isinstance(value, Mapping):
-        return {str(name): _json_value(one) for name, one in value.items()}
+        return {str(name): _json_value(item) for name, item in value.items()}
     if isinstance(value, float):
         return value + 0.0 if math.isfinite(value) else None  # no negative zero
     return value if isinstance(value, str | int | bool | None) else str(value)
 
 
-def _format_number(one: Mapping[str, Any]) -> str:
-    value, unit = one["value"], one.get("unit", "1")
+def _format_number(entry: Mapping[str, Any]) -> str:
+    value, unit = entry["value"], entry.get("unit", "1")
     number = f"{value:.6g}" if isinstance(value, float) else str(value)
     return number if unit == "1" else f"{number} {unit}"

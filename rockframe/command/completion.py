@@ -57,11 +57,13 @@ def script(shell: str) -> str:
 def _options(command: Command) -> list[tuple[CommandArgument, str]]:
     """Return the options of a command, each by its long name."""
     values = (*command.arguments, *COMMON_OPTIONS)
-    return [(one, one.names[-1]) for one in values if one.names[0].startswith("-")]
+    return [
+        (argument, argument.names[-1]) for argument in values if argument.names[0].startswith("-")
+    ]
 
 
 def _choices(command: Command) -> list[str]:
-    return [word for one in command.arguments for word in one.settings.get("choices", ())]
+    return [word for argument in command.arguments for word in argument.settings.get("choices", ())]
 
 
 def _bash() -> str:
@@ -77,23 +79,24 @@ def _zsh() -> str:
     cases = []
     for command in COMMANDS:
         words = [
-            f"'{name}[{_unquoted_help(one)}]{_zsh_value(one)}'" for one, name in _options(command)
+            f"'{name}[{_unquoted_help(argument)}]{_zsh_value(argument)}'"
+            for argument, name in _options(command)
         ]
         choices = _choices(command)
         places = f"'*:choice:({' '.join(choices)})'" if choices else "'*:file:_files'"
         cases.append(f"        {command.name}) _arguments {' '.join([*words, places])} ;;")
-    names = "\n".join(f"        '{one.name}:{one.summary}'" for one in COMMANDS)
+    names = "\n".join(f"        '{command.name}:{command.summary}'" for command in COMMANDS)
     return _ZSH.replace("@COMMANDS@", names).replace("@CASES@", "\n".join(cases))
 
 
-def _zsh_value(one: CommandArgument) -> str:
-    if "action" in one.settings:
+def _zsh_value(argument: CommandArgument) -> str:
+    if "action" in argument.settings:
         return ""
-    return ":file:_files" if one.is_file else ":value:"
+    return ":file:_files" if argument.is_file else ":value:"
 
 
 def _fish() -> str:
-    unseen = "not __fish_seen_subcommand_from " + " ".join(one.name for one in COMMANDS)
+    unseen = "not __fish_seen_subcommand_from " + " ".join(command.name for command in COMMANDS)
     lines = [
         f"complete -c rockframe -f -n '{unseen}' -a {command.name} -d '{command.summary}'"
         for command in COMMANDS
@@ -101,9 +104,9 @@ def _fish() -> str:
     for command in COMMANDS:
         seen = f"complete -c rockframe -n '__fish_seen_subcommand_from {command.name}'"
         lines += [
-            f"{seen} -l {name.removeprefix('--')} -d '{_unquoted_help(one)}'"
-            f"{'' if 'action' in one.settings else ' -r'}"
-            for one, name in _options(command)
+            f"{seen} -l {name.removeprefix('--')} -d '{_unquoted_help(argument)}'"
+            f"{'' if 'action' in argument.settings else ' -r'}"
+            for argument, name in _options(command)
         ]
         choices = _choices(command)
         if choices:
@@ -111,9 +114,9 @@ def _fish() -> str:
     return "\n".join(lines) + "\n"
 
 
-def _unquoted_help(one: CommandArgument) -> str:
+def _unquoted_help(argument: CommandArgument) -> str:
     """Return the help text of an option without characters that shells interpret."""
-    words = str(one.settings.get("help", ""))
+    words = str(argument.settings.get("help", ""))
     for mark in "'[]:":
         words = words.replace(mark, "")
     return words

@@ -124,7 +124,9 @@ def execute_animate(arguments: argparse.Namespace, answer: Answer) -> int:
 def _run_of(arguments: argparse.Namespace, answer: Answer) -> xr.Dataset:
     """Read a run, or simulate a scene."""
     if is_result(arguments.dataset):
-        typed = [one for one in RUN_OPTIONS if getattr(arguments, one.attribute) is not None]
+        typed = [
+            option for option in RUN_OPTIONS if getattr(arguments, option.attribute) is not None
+        ]
         if typed:
             words = f"this is a result, which has run; {typed[0].names[-1]} goes with a scene"
             raise FileError(arguments.dataset, words)

@@ -82,7 +82,7 @@ _MOTION_TABLE_KIND: Final = table_kind(
 )
 _NETCDF_KIND: Final = dataset_kind(
     "a motion or a set of motions",
-    lambda found: "motion_sha256" in {*found.attrs, *found.variables},
+    lambda dataset: "motion_sha256" in {*dataset.attrs, *dataset.variables},
 )
 _KINDS: Final = {"csv": _MOTION_TABLE_KIND, "nc": _NETCDF_KIND}
 _UNSAFE_CHARACTERS: Final = re.compile(r"[^\w.+-]+")
@@ -118,15 +118,15 @@ def execute_convert(arguments: argparse.Namespace, answer: Answer) -> int:
 def _format_from_ending(output: str) -> str:
     """Return the format by the ending of a file."""
     ending = Path(output).suffix.lower()
-    found = next((form for form, one in _ENDINGS.items() if one.lower() == ending), None)
-    if found is None:
+    chosen = next((form for form, suffix in _ENDINGS.items() if suffix.lower() == ending), None)
+    if chosen is None:
         known = ", ".join(_ENDINGS.values())
         words = (
             f"the ending gives no format; expected {known}, or a folder and a format such as "
             "--to at2"
         )
         raise FileError(output, words)
-    return found
+    return chosen
 
 
 def _make_folder(folder: Path, named: str) -> None:
@@ -139,17 +139,17 @@ def _make_folder(folder: Path, named: str) -> None:
 
 def _file_names(motions: Mapping[str, GroundMotion], folder: Path, ending: str) -> dict[str, Path]:
     """Give each motion a path of its own."""
-    found: dict[str, Path] = {}
+    paths: dict[str, Path] = {}
     for name in motions:
         stem = _UNSAFE_CHARACTERS.sub("_", name).strip("._") or "motion"
-        taken = {path.stem.casefold() for path in found.values()}
+        taken = {path.stem.casefold() for path in paths.values()}
         number = 1
         unique = stem
         while unique.casefold() in taken:
             number += 1
             unique = f"{stem}_{number}"
-        found[name] = folder / f"{unique}{ending}"
-    return found
+        paths[name] = folder / f"{unique}{ending}"
+    return paths
 
 
 def _single_motion(

@@ -53,8 +53,8 @@ Questions:
 def build_parser() -> argparse.ArgumentParser:
     """Build the parser of the whole command line."""
     everywhere = argparse.ArgumentParser(add_help=False)
-    for one in COMMON_OPTIONS:
-        everywhere.add_argument(*one.names, **one.settings, default=argparse.SUPPRESS)
+    for option in COMMON_OPTIONS:
+        everywhere.add_argument(*option.names, **option.settings, default=argparse.SUPPRESS)
     parser = _Parser(
         prog="rockframe",
         description=_DESCRIPTION,
@@ -68,7 +68,7 @@ def build_parser() -> argparse.ArgumentParser:
         dest="command", metavar="COMMAND", title="commands", parser_class=_CommandParser
     )
     for command in COMMANDS:
-        one = commands.add_parser(
+        subparser = commands.add_parser(
             command.name,
             help=command.summary,
             description=command.description,
@@ -78,8 +78,8 @@ def build_parser() -> argparse.ArgumentParser:
             allow_abbrev=False,
         )
         for argument in command.arguments:
-            one.add_argument(*argument.names, **argument.settings)
-        one.set_defaults(module=command.module)
+            subparser.add_argument(*argument.names, **argument.settings)
+        subparser.set_defaults(module=command.module)
     return parser
 
 
@@ -109,7 +109,7 @@ def unknown_word_message(typed: Sequence[str]) -> str | None:
 
 def rewrite_for_command_line(words: str, name: str) -> str:
     """Rewrite a message of a Python function for the command line and the file of a scene."""
-    command = next(one for one in COMMANDS if one.name == name)
+    command = next(candidate for candidate in COMMANDS if candidate.name == name)
     options = _options(command)
 
     def typed(match: re.Match[str]) -> str:
@@ -128,7 +128,7 @@ def rewrite_for_command_line(words: str, name: str) -> str:
 def _options(command: Command | None) -> list[str]:
     """Return all options of a command, or those that are allowed before the command."""
     declared = [*COMMON_OPTIONS, *(() if command is None else command.arguments)]
-    names = [name for one in declared for name in one.names if name.startswith("-")]
+    names = [name for argument in declared for name in argument.names if name.startswith("-")]
     return [*names, "-h", "--help", *(["--version"] if command is None else [])]
 
 
@@ -143,12 +143,12 @@ def _unknown_option_message(word: str, command: Command | None, options: Sequenc
     near = suggestion(word[2:].replace("-", "_"), names)
     for name, option in names.items():
         near = near.replace(repr(name), repr(option))
-    also = [one.name for one in COMMANDS if word in _options(one)]
+    also = [candidate.name for candidate in COMMANDS if word in _options(candidate)]
     if also:
-        others = f"{', '.join(also)} {'takes' if len(also) == 1 else 'take'} it"
+        advice = f"{', '.join(also)} {'takes' if len(also) == 1 else 'take'} it"
         place = "before the command" if command is None else "here"
         return (
-            f"{program}: there is no option {word} {place}; {others}. '{program} --help' lists all"
+            f"{program}: there is no option {word} {place}; {advice}. '{program} --help' lists all"
         )
     return f"{program}: there is no option {word}{near} '{program} --help' lists all"
 
@@ -187,12 +187,12 @@ class _CommandParser(_Parser):
 
     def error(self, message: str) -> NoReturn:
         """Add the choice that was probably meant to the message."""
-        found = _INVALID_CHOICE.search(message)
-        if found is not None:
+        match = _INVALID_CHOICE.search(message)
+        if match is not None:
             choices = [
                 choice for action in self._actions for choice in action.choices or ()
             ]  # the message does not always list the choices of its argument
-            near = suggestion(found[1], [str(one) for one in choices])
+            near = suggestion(match[1], [str(choice) for choice in choices])
             message += near if near != "." else ""
         super().error(message)
 

@@ -93,7 +93,7 @@ def _code_checks(
     """
     listed = json.loads(str(dataset.attrs.get(PROJECT_ATTRIBUTE, "{}"))).get(CHECKS, ())
     required = bool(typed)
-    typed = typed or [parse_check(one, CHECKS) for one in listed]
+    typed = typed or [parse_check(text, CHECKS) for text in listed]
     if not typed:
         return []
     try:
@@ -108,7 +108,7 @@ def _code_checks(
     motions_of_result = available_motions(dataset, motions, _CHECK_OPTION)
     if not motions_of_result and system.motion is not None:
         motions_of_result = {system.motion.name: system.motion}
-    found: list[CodeCheck] = []
+    checks: list[CodeCheck] = []
     for words in typed:
         demand = motions_of_result or (target if words[0] == "circolare_2019" else None)
         if demand is None and words[0] == "circolare_2019":
@@ -119,8 +119,8 @@ def _code_checks(
                 "--motion, or a spectrum, by --target"
             )
             raise ComponentError(msg)
-        found.append(call_typed(CODES, words, _CHECK_OPTION, system, demand))
-    return found
+        checks.append(call_typed(CODES, words, _CHECK_OPTION, system, demand))
+    return checks
 
 
 def _simulate_case(
@@ -135,7 +135,7 @@ def _simulate_case(
     if strange:
         words = f"--case: there is no axis {strange[0]!r}; records are given by --motions"
         raise FileError(arguments.dataset, words)
-    found = case(dataset, motions=motions, **values)
-    again = found.simulate()
+    selected = case(dataset, motions=motions, **values)
+    again = selected.simulate()
     again.encoding["source"] = str(Path(arguments.dataset).expanduser())
     return again

@@ -32,10 +32,10 @@ _FINISHED_STATUSES: Final = (RunStatus.COMPLETED, RunStatus.OVERTURNED, RunStatu
 
 def execute_run(arguments: argparse.Namespace, answer: Answer) -> int:
     """Simulate, and report the verdict."""
-    found = scene_from(arguments)
-    outputs = Outputs(arguments, found.files, answer, output=RUN_KIND)
-    response = simulate_scene(found)
-    answer.add_context("Scene", f"{part_names(found.system)} ({response.attrs['model']})")
+    scene = scene_from(arguments)
+    outputs = Outputs(arguments, scene.files, answer, output=RUN_KIND)
+    response = simulate_scene(scene)
+    answer.add_context("Scene", f"{part_names(scene.system)} ({response.attrs['model']})")
     answer.add_context("Motion", motion_words(response.attrs))
     answer.add_result("Verdict", response.attrs["verdict"])
     for name in ("certificate", "proof"):
@@ -58,10 +58,10 @@ def is_finished(response: xr.Dataset) -> bool:
 
 def execute_certify(arguments: argparse.Namespace, answer: Answer) -> int:
     """Simulate with all runs of the certificate, and report their outcome."""
-    found = scene_from(arguments)
-    outputs = Outputs(arguments, found.files, answer, output=RUN_KIND)
-    certification = _certification_of(found.run.get("certify"), arguments)
-    response = simulate_scene(found, certify=certification)
+    scene = scene_from(arguments)
+    outputs = Outputs(arguments, scene.files, answer, output=RUN_KIND)
+    certification = _certification_of(scene.run.get("certify"), arguments)
+    response = simulate_scene(scene, certify=certification)
     answer.add_result("Verdict", response.attrs["verdict"])
     kind = "proof" if certification == PROVED else "certificate"
     sentence = response.attrs[kind]
@@ -99,14 +99,14 @@ def execute_template(arguments: argparse.Namespace, answer: Answer) -> int:
 
 def execute_describe(arguments: argparse.Namespace, answer: Answer) -> int:
     """Describe the scene of a file."""
-    found = read_scene(arguments.scene)
-    assembly = found.system.assembly
+    scene = read_scene(arguments.scene)
+    assembly = scene.system.assembly
     tables = [(head, ", ".join(keys)) for head, keys in toml_tables(assembly.parts.structural())]
     described = describe(assembly.setting, assembly.parts, tables)
     motion = "none"
-    if found.motion is not None:
-        vertical = "" if found.motion.si.vertical is None else ", with vertical"
-        motion = f"{found.motion.name}: {motion_summary(found.motion)}{vertical}"
+    if scene.motion is not None:
+        vertical = "" if scene.motion.si.vertical is None else ", with vertical"
+        motion = f"{scene.motion.name}: {motion_summary(scene.motion)}{vertical}"
     answer.add_text(
         f"{described}\nMotion:\n  {motion}",
         model=assembly.setting.model,

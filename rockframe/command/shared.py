@@ -68,23 +68,23 @@ def motions_from(arguments: argparse.Namespace) -> Mapping[str, GroundMotion]:
     """Read the component of each file that is named, else all components."""
     paths = arguments.files
     if arguments.component is not None:
-        found = [motion_from(path, arguments) for path in paths]
-        return {f"{number}: {one.name}": one for number, one in enumerate(found, 1)}
+        motions = [motion_from(path, arguments) for path in paths]
+        return {f"{number}: {motion.name}": motion for number, motion in enumerate(motions, 1)}
     try:
         return suite_from(paths, arguments)
     except RecordError:
         if len(paths) > 1 or paths[0] == STREAM:
             raise
         with suppress(RecordError):  # a file of a vertical component alone, read with a warning
-            one = motion_from(paths[0], arguments)
-            return {one.name: one}
+            motion = motion_from(paths[0], arguments)
+            return {motion.name: motion}
         raise
 
 
 def scene_from(arguments: argparse.Namespace, *, needs_motion: bool = False) -> SceneDescription:
     """Read the scene; options replace its motion and arguments of its run."""
-    found = read_scene(arguments.scene)
-    motion, files = found.motion, found.files
+    scene = read_scene(arguments.scene)
+    motion, files = scene.motion, scene.files
     if arguments.motion is None:
         refuse_reading_options(arguments, "name one with --motion")
     else:
@@ -97,15 +97,15 @@ def scene_from(arguments: argparse.Namespace, *, needs_motion: bool = False) -> 
             words = f"--scale {arguments.scale:g} multiplies a motion, and {_NO_MOTION}"
             raise FileError(arguments.scene, words)
         motion = motion.scaled(arguments.scale)
-    return replace(found, motion=motion, run=run_from(found.run, arguments), files=files)
+    return replace(scene, motion=motion, run=run_from(scene.run, arguments), files=files)
 
 
 def refuse_reading_options(arguments: argparse.Namespace, advice: str) -> None:
     """Refuse options on how a record is read, where no record is named."""
-    for one in READING_OPTIONS:
-        value = getattr(arguments, one.attribute, None)
+    for option in READING_OPTIONS:
+        value = getattr(arguments, option.attribute, None)
         if value is not None:
-            msg = f"{one.names[-1]} {value}: this says how a record is read; {advice}"
+            msg = f"{option.names[-1]} {value}: this says how a record is read; {advice}"
             raise ComponentError(msg)
 
 
@@ -139,7 +139,7 @@ def arguments_accepted_by(function: Callable[..., Any], run: Mapping[str, Any]) 
 
 def reading_options(arguments: argparse.Namespace) -> dict[str, Any]:
     """Return the typed options on how a record is read."""
-    return typed_options(arguments, *(one.attribute for one in READING_OPTIONS))
+    return typed_options(arguments, *(option.attribute for option in READING_OPTIONS))
 
 
 def typed_options(arguments: argparse.Namespace, *names: str) -> dict[str, Any]:
@@ -162,9 +162,9 @@ def parse_numbers(words: str, option: str, example: str) -> tuple[list[float], s
     unit = unit.strip()
     try:
         if ":" not in numbers:
-            found = [float(one) for one in numbers.split(",")]
+            values = [float(number) for number in numbers.split(",")]
         else:
-            found = _range_values(*map(float, numbers.split(":")))
+            values = _range_values(*map(float, numbers.split(":")))
         if (" " in example) != bool(unit):
             raise ValueError
     except (TypeError, ValueError, ZeroDivisionError):
@@ -174,13 +174,13 @@ def parse_numbers(words: str, option: str, example: str) -> tuple[list[float], s
             f"listed with commas, decimals with a point; got {short_repr(words)}"
         )
         raise ComponentError(msg) from None
-    if 0.0 in found:
+    if 0.0 in values:
         msg = (
-            f"{option}: expected numbers other than zero, got {', '.join(f'{x:g}' for x in found)} "
-            f"from {short_repr(words)}; commas separate numbers, decimals have a point, as in 0.5"
+            f"{option}: expected numbers other than zero, got {', '.join(f'{x:g}' for x in values)}"
+            f" from {short_repr(words)}; commas separate numbers, decimals have a point, as in 0.5"
         )
         raise ComponentError(msg)
-    return found, unit
+    return values, unit
 
 
 def _range_values(start: float, end: float, step: float) -> list[float]:
@@ -191,22 +191,22 @@ def _range_values(start: float, end: float, step: float) -> list[float]:
     return [round(start + k * step, 12) for k in range(1 + floor(count + 1e-9))]
 
 
-def simulate_scene(found: SceneDescription, **more: Any) -> xr.Dataset:
+def simulate_scene(scene: SceneDescription, **more: Any) -> xr.Dataset:
     """Simulate what a file describes."""
-    return with_project(found.system.simulate(found.motion, **{**found.run, **more}), found.project)
+    return with_project(scene.system.simulate(scene.motion, **{**scene.run, **more}), scene.project)
 
 
 def run_analysis(
     analysis: Callable[..., xr.Dataset],
-    found: Any,
+    description: Any,
     motions: object,
     values: Mapping[str, Any],
     arguments: argparse.Namespace,
 ) -> xr.Dataset:
     """Analyse what a file describes, with a progress bar."""
     with closing(TerminalProgressBar(arguments.command, enabled=not arguments.quiet)) as bar:
-        dataset = analysis(found.system, motions, **values, progress=bar)
-    return with_project(dataset, found.project)
+        dataset = analysis(description.system, motions, **values, progress=bar)
+    return with_project(dataset, description.project)
 
 
 def with_project(dataset: xr.Dataset, project: str) -> xr.Dataset:
@@ -308,8 +308,8 @@ def read_result(path: str) -> xr.Dataset:
 
 def _open_result(place: Path, path: str) -> xr.Dataset:
     if not place.is_file():
-        found = "this is a folder" if place.is_dir() else "there is no such file"
-        raise FileError(path, f"{found}; {_RESULT_HINT}")
+        fault = "this is a folder" if place.is_dir() else "there is no such file"
+        raise FileError(path, f"{fault}; {_RESULT_HINT}")
     try:
         with xr.open_dataset(place) as dataset:
             return dataset.load()
@@ -320,15 +320,15 @@ def _open_result(place: Path, path: str) -> xr.Dataset:
 def result_kind(words: str, *, axes: bool) -> FileKind:
     """Return the kind of file of results, of one run or of a study with axes."""
 
-    def fits(found: xr.Dataset) -> bool:
-        known = {*found.attrs}
-        return _is_computed(found) and "run_json" in known and axes == ("axes_json" in known)
+    def fits(dataset: xr.Dataset) -> bool:
+        known = {*dataset.attrs}
+        return _is_computed(dataset) and "run_json" in known and axes == ("axes_json" in known)
 
     return dataset_kind(words, fits)
 
 
-def _is_computed(found: xr.Dataset) -> bool:
-    return str(found.attrs.get("source", "")).startswith("rockframe ")
+def _is_computed(dataset: xr.Dataset) -> bool:
+    return str(dataset.attrs.get("source", "")).startswith("rockframe ")
 
 
 def dataset_kind(words: str, fits: Callable[[xr.Dataset], bool]) -> FileKind:
@@ -336,8 +336,8 @@ def dataset_kind(words: str, fits: Callable[[xr.Dataset], bool]) -> FileKind:
 
     def is_own(path: Path) -> bool:
         try:
-            with xr.open_dataset(path, decode_cf=False) as found:
-                return fits(found)
+            with xr.open_dataset(path, decode_cf=False) as dataset:
+                return fits(dataset)
         except Exception:  # whatever the libraries raise on files of other formats
             return False
 
@@ -359,7 +359,9 @@ def table_kind(words: str, *names: str, also: Iterable[str] = ()) -> FileKind:
 
 def analysis_kind(words: str, *names: str) -> FileKind:
     """Return the kind of file of an analysis, recognised by its variables."""
-    return dataset_kind(words, lambda found: _is_computed(found) and {*names} <= {*found.variables})
+    return dataset_kind(
+        words, lambda dataset: _is_computed(dataset) and {*names} <= {*dataset.variables}
+    )
 
 
 RUN_KIND: Final = result_kind("the result of a run", axes=False)

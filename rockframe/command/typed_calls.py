@@ -25,17 +25,17 @@ _EXPECTED_COLUMNS: Final = (
 
 def values_by_name(words: Iterable[str], option: str, example: str) -> dict[str, str]:
     """Read words of the form NAME=VALUE."""
-    found = [word.partition("=") for word in words]
-    for name, _, value in found:
+    pairs = [word.partition("=") for word in words]
+    for name, _, value in pairs:
         if not (name and value):
             msg = f"{option}: expected NAME=VALUE, such as {example}, got {name!r}"
             raise ComponentError(msg)
-    names = [name for name, _, _ in found]
+    names = [name for name, _, _ in pairs]
     twice = next((name for name in names if names.count(name) > 1), None)
     if twice is not None:
         msg = f"{option}: found {twice} twice; expected it once"
         raise ComponentError(msg)
-    return {name: value for name, _, value in found}
+    return {name: value for name, _, value in pairs}
 
 
 def call_typed(
@@ -59,14 +59,14 @@ def parse_call(
     first = tuple(arguments_of(function))[:before]
     known = arguments_of(function, without=first)
     value = values_by_name(typed, option, f"{next(iter(known))}=...")
-    unknown = [one for one in value if one not in known]
-    missing = [one for one, needed in known.items() if needed and one not in value]
+    unknown = [key for key in value if key not in known]
+    missing = [key for key, needed in known.items() if needed and key not in value]
     if unknown or missing:
         message = f"has no {unknown[0]!r}{did_you_mean(unknown[0], known)}" if unknown else ""
         message = message or f"needs {missing[0]}=..."
         msg = f"{option}: {name} {message}; it takes {', '.join(known)}"
         raise ComponentError(msg)
-    return function, {one: _parse_value(text) for one, text in value.items()}
+    return function, {key: _parse_value(text) for key, text in value.items()}
 
 
 def parse_check(text: str, option: str) -> list[str]:
@@ -101,8 +101,8 @@ def _read_spectrum(path: str) -> tuple[tuple[Any, str], tuple[Any, str]]:
         words = f"the table cannot be read ({problem}); expected {_EXPECTED_COLUMNS}"
         raise FileError(path, words) from problem
     if len(columns) != 2:
-        found = ", ".join(map(str, frame.columns))
-        raise FileError(path, [(1, f"found the columns {found}; expected {_EXPECTED_COLUMNS}")])
+        heads = ", ".join(map(str, frame.columns))
+        raise FileError(path, [(1, f"found the columns {heads}; expected {_EXPECTED_COLUMNS}")])
     return columns["period"], columns["acceleration"]
 
 

@@ -96,7 +96,7 @@ def model_ladder(system: System) -> dict[str, System]:
     rocks = not slides or "stack" in present or not squat_body_warnings(system.parts.block_si, "")
     # a wall prevents the sliding of the model without it
     prevents_sliding = slides or "wall" in present
-    whole, sliding = components, Sliding.CHECKED if prevents_sliding else system.sliding
+    all_parts, sliding = components, Sliding.CHECKED if prevents_sliding else system.sliding
     if slides and "stack" in present:  # the bases of a stack do not slide without a friction
         components = {slot: _without_sliding(part) for slot, part in components.items()}
         sliding = system.sliding
@@ -109,7 +109,7 @@ def model_ladder(system: System) -> dict[str, System]:
     last = ""
     links = () if system.parts.own else system.parts.links
     link_words = " and ".join(
-        dict.fromkeys(_LINK_WORDS.get(type(one), type(one).__name__) for one in links)
+        dict.fromkeys(_LINK_WORDS.get(type(link), type(link).__name__) for link in links)
     )
     with warnings.catch_warnings():
         # a simpler model may warn of effects that it leaves out; the scene has warned before
@@ -136,7 +136,7 @@ def model_ladder(system: System) -> dict[str, System]:
                         models[last] = System(*parts.values(), *links, **options)
     if slides:
         sliding_options: dict[str, Any] = {**options, "sliding": Sliding.COMPUTED}
-        models[f"{last}, sliding"] = System(*whole.values(), **sliding_options)
+        models[f"{last}, sliding"] = System(*all_parts.values(), **sliding_options)
     if system.parts.own:
         models[system.setting.model] = System(
             *components.values(), rotation=system.rotation, **options
@@ -147,7 +147,9 @@ def model_ladder(system: System) -> dict[str, System]:
 def _without_sliding(part: Component) -> Component:
     """Return a base, or a stack with all its interfaces, without sliding."""
     if isinstance(part, Stack):
-        return part.replace(interfaces=[_without_sliding(one) for one in part.interfaces])
+        return part.replace(
+            interfaces=[_without_sliding(interface) for interface in part.interfaces]
+        )
     if isinstance(part, RigidGround):
         return RigidGround(restitution=part.si.restitution)
     if isinstance(part, TwoSpringSupport | WinklerSoil):

@@ -119,11 +119,11 @@ def recommend(
     choice = f"{model!r} at accuracy {accuracy!r}"
     cost = f"{_plain_number(1e3 * times[row, column], 3)} ms a run"
     quantity = _ERRORS[error] + " or slip" * (error == "peak_error" and "peak_slip" in dataset)
-    found = f"off by {_error_words(errors[row, column], 2)} in {quantity}"
+    distance = f"off by {_error_words(errors[row, column], 2)} in {quantity}"
     if met:
         slowest = float(np.max(times)) / float(times[row, column])
         sentence = (
-            f"For an error of at most {_error_words(limit, 3)}, take {choice}: {found}, {cost}, "
+            f"For an error of at most {_error_words(limit, 3)}, take {choice}: {distance}, {cost}, "
             f"{_plain_number(slowest, 3)} times faster than the slowest rung."
         )
         if error == "peak_error" and "overturned" in dataset and dataset["overturned"][row, column]:
@@ -134,7 +134,7 @@ def recommend(
     elif agrees[row, column]:
         sentence = f"No rung tried comes within {_error_words(limit, 3)}"
         if np.isfinite(errors[row, column]):
-            sentence += f"; the nearest is {choice}: {found}."
+            sentence += f"; the nearest is {choice}: {distance}."
         else:
             sentence += ": the scene itself does not rotate, but all rungs with its verdict do."
     else:

@@ -53,21 +53,21 @@ def relative_peak_error(run: xr.Dataset, reference: xr.Dataset) -> float:
 
 def _slips(run: xr.Dataset) -> AnyArray:
     """Return the peak slips of all bodies of a run, or zero if its model has no sliding [m]."""
-    found = [np.atleast_1d(run[name].to_numpy()) for name in PEAK_SLIPS if name in run]
-    return np.concatenate(found) if found else np.zeros(1)
+    slips = [np.atleast_1d(run[name].to_numpy()) for name in PEAK_SLIPS if name in run]
+    return np.concatenate(slips) if slips else np.zeros(1)
 
 
 def history_error(run: xr.Dataset, reference: xr.Dataset) -> float:
     """Return the largest difference of both histories of rotation over the peak rotation [1]."""
     if _without_verdict(run, reference):
         return float("nan")
-    one, other = (data["rotation"].to_numpy() for data in (run, reference))
+    rotation, expected = (data["rotation"].to_numpy() for data in (run, reference))
     times = [data["time"].to_numpy() for data in (run, reference)]
-    count = min(one.size, other.size)
+    count = min(rotation.size, expected.size)
     while count > 0 and times[0][count - 1] != times[1][count - 1]:
         count -= 1  # a run that overturned ends between two samples of the other
-    peak = float(np.max(np.abs(other[:count]), initial=0.0))
-    return _relative(float(np.max(np.abs(one[:count] - other[:count]), initial=0.0)), peak)
+    peak = float(np.max(np.abs(expected[:count]), initial=0.0))
+    return _relative(float(np.max(np.abs(rotation[:count] - expected[:count]), initial=0.0)), peak)
 
 
 def event_time_error(run: xr.Dataset, reference: xr.Dataset) -> float:
@@ -228,7 +228,7 @@ def measure_run(
     scene: System, plan: Plan, converged: xr.Dataset, reference: xr.Dataset, repeats: int
 ) -> Outcome:
     """Run a model at an accuracy, time it, and compare it with both references."""
-    found = run(scene.assembly, plan)
+    response = run(scene.assembly, plan)
     bare = replace(plan, output_step=None)
     _run_until_compiled(scene, bare)
     times = [_time_of_run(scene, bare) for _ in range(repeats)]
@@ -236,14 +236,16 @@ def measure_run(
         "run_time": float(np.median(times)),
         "run_time_least": min(times),
         "run_time_greatest": max(times),
-        "numerical_peak_error": relative_peak_error(found, converged),
-        "numerical_history_error": history_error(found, converged),
-        "event_time_error": event_time_error(found, converged),
-        "peak_error": relative_peak_error(found, reference),
-        "history_error": history_error(found, reference),
-        "verdict_agrees": verdicts_agree(found, reference),
-        **{name: found[name].item() for name in _COPIED_SCALARS},
-        **({"peak_slip": float(found.get("peak_slip", 0.0))} if "peak_slip" in reference else {}),
+        "numerical_peak_error": relative_peak_error(response, converged),
+        "numerical_history_error": history_error(response, converged),
+        "event_time_error": event_time_error(response, converged),
+        "peak_error": relative_peak_error(response, reference),
+        "history_error": history_error(response, reference),
+        "verdict_agrees": verdicts_agree(response, reference),
+        **{name: response[name].item() for name in _COPIED_SCALARS},
+        **(
+            {"peak_slip": float(response.get("peak_slip", 0.0))} if "peak_slip" in reference else {}
+        ),
     }
 
 

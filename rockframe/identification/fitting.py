@@ -81,7 +81,7 @@ def minimize(
     from scipy.optimize import least_squares
 
     start, scale, lower, upper = (
-        np.array([getattr(one, name) for one in unknowns])
+        np.array([getattr(unknown, name) for unknown in unknowns])
         for name in ("start", "scale", "lower", "upper")
     )
 
@@ -103,7 +103,7 @@ def minimize(
         return np.stack(columns, axis=1)
 
     # SciPy limits the first step by the distance of the start from zero
-    found = least_squares(
+    result = least_squares(
         misfit,
         np.full(start.size, _FIRST_STEP),
         jac=cast("Any", jacobian),
@@ -113,20 +113,20 @@ def minimize(
         gtol=tolerance,
         max_nfev=MAX_EVALUATIONS,
     )
-    norms = np.linalg.norm(found.jac, axis=0)
+    norms = np.linalg.norm(result.jac, axis=0)
     has_effect = norms > _NO_EFFECT * np.max(norms)
     # rounding moves an unknown without effect: it keeps its start value
-    values = np.where(has_effect, values_at(found.x), start)
+    values = np.where(has_effect, values_at(result.x), start)
     distance = np.minimum(values - lower, upper - values) / scale
     return Solution(
         values=values,
-        jacobian=np.asarray(found.jac) / scale,
-        residuals=np.asarray(found.fun),
-        status=int(found.status),
-        evaluations=int(found.nfev),
+        jacobian=np.asarray(result.jac) / scale,
+        residuals=np.asarray(result.fun),
+        status=int(result.status),
+        evaluations=int(result.nfev),
         at_bound=has_effect & (distance < _AT_BOUND),
         has_effect=has_effect,
-        degrees_of_freedom=found.fun.size - found.x.size,
+        degrees_of_freedom=result.fun.size - result.x.size,
     )
 
 
@@ -215,12 +215,12 @@ def fit_peaks(
 
 def _fit_roughly(residuals: Callable[[Array], Array], unknowns: Sequence[Unknown]) -> Solution:
     """Fit roughly, first the circumstances alone, whose errors would distort the parameters."""
-    values = np.array([one.start for one in unknowns])
-    where = [index for index, one in enumerate(unknowns) if one.name in tuple(Circumstance)]
+    values = np.array([unknown.start for unknown in unknowns])
+    where = [index for index, unknown in enumerate(unknowns) if unknown.name in tuple(Circumstance)]
 
-    def of_circumstances(found: Array) -> Array:
+    def of_circumstances(estimates: Array) -> Array:
         every = values.copy()
-        every[where] = found
+        every[where] = estimates
         return residuals(every)
 
     if where:
@@ -245,11 +245,11 @@ def _peak_residuals(
 
     def misfit(values: Array) -> Array:
         times, rotation = prediction.peaks(values, measured)
-        found = (rotation - measured.rotation) / weights.rotation
+        rotation_residuals = (rotation - measured.rotation) / weights.rotation
         if measured.time is None:
-            return found
+            return rotation_residuals
         known = np.isfinite(measured.time)
-        return np.concatenate([found, (times - measured.time)[known] / weights.time])
+        return np.concatenate([rotation_residuals, (times - measured.time)[known] / weights.time])
 
     return misfit
 

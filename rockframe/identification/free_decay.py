@@ -197,7 +197,10 @@ def _read_circumstances(
     if isinstance(data, MeasuredPeaks) and data.signed:
         circumstances.append(Circumstance.GAUGE_OFFSET)
     listed = checked_list(values, owner=OWNER, name="circumstances", of="names")
-    names = [checked_choice(Circumstance, one, owner=OWNER, name="circumstances") for one in listed]
+    names = [
+        checked_choice(Circumstance, circumstance, owner=OWNER, name="circumstances")
+        for circumstance in listed
+    ]
     for name in names:
         if name not in circumstances:
             needed = "times" if name is Circumstance.RELEASE_TIME else "their signs"

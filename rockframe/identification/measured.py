@@ -116,7 +116,7 @@ def check_below_overturning(measured: History | MeasuredPeaks, angles: Overturni
     beyond = np.flatnonzero(np.abs(measured.rotation) >= theta)
     if beyond.size:
         first = int(beyond[0])
-        angle, limit = (angle_words(float(one[first])) for one in (measured.rotation, theta))
+        angle, limit = (angle_words(float(values[first])) for values in (measured.rotation, theta))
         msg = (
             f"{OWNER}: {_datum_words(measured, first)} is {angle}, not below the overturning angle "
             f"{limit}; check the unit, and the size of the block"
@@ -302,7 +302,7 @@ def _peak_of_swing(time: Array, swing: Array) -> tuple[float, float]:
     if near.size < _MIN_SAMPLES:
         return when, size
     along = time[near] - when
-    square, slope, value = (float(one) for one in np.polyfit(along, swing[near], 2))
+    square, slope, value = (float(coefficient) for coefficient in np.polyfit(along, swing[near], 2))
     if square * size >= 0.0 or not along[0] <= -0.5 * slope / square <= along[-1]:
         return when, size
     return when - 0.5 * slope / square, value - 0.25 * slope * slope / square

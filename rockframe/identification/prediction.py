@@ -56,11 +56,11 @@ class FreeMotion:
         nonzero = np.flatnonzero(side)
         side_changes = nonzero[1:][side[nonzero[1:]] != side[nonzero[:-1]]]
         edges = np.concatenate([nonzero[:1], side_changes])
-        found = [
+        peaks = [
             self._peak(first + int(np.argmax(np.abs(self.rotation[first:end]))))
             for first, end in pairwise(edges.tolist())
         ]
-        times, sizes = zip(*found, strict=True) if found else ((), ())
+        times, sizes = zip(*peaks, strict=True) if peaks else ((), ())
         return np.array(times), np.array(sizes)
 
     def _peak(self, node: int) -> tuple[float, float]:
@@ -69,7 +69,9 @@ class FreeMotion:
         first = node if rises else node - 1
         if first < 0 or self.time[first + 1] <= self.time[first]:
             return float(self.time[node]), float(abs(self.rotation[node]))
-        start, slope, square, cube = (float(one[0]) for one in self._cubics(np.array([first])))
+        start, slope, square, cube = (
+            float(coefficient[0]) for coefficient in self._cubics(np.array([first]))
+        )
         # root of slope + 2 square s + 3 cube s^2, in a form that is accurate for a small cube too
         discriminant = max(0.0, square * square - 3.0 * cube * slope)
         divisor = -square - math.copysign(math.sqrt(discriminant), square)
@@ -104,11 +106,11 @@ def release_response(
     event_states = np.stack([events.state_before, events.state_after], axis=1)
     state = np.concatenate([event_states.reshape(-1, run.state.shape[1]), run.state])
     # a sample at the instant of an event has the rate of one side of its jump only
-    kept = np.ones(time.size, dtype=bool)
-    kept[2 * events.time.size :] = ~np.isin(run.time, events.time[events.time > 0.0])
-    order = np.argsort(time[kept], kind="stable")
-    state = state[kept][order]
-    return FreeMotion(time[kept][order], state[:, :count] @ weights, state[:, rates] @ weights)
+    is_valid = np.ones(time.size, dtype=bool)
+    is_valid[2 * events.time.size :] = ~np.isin(run.time, events.time[events.time > 0.0])
+    order = np.argsort(time[is_valid], kind="stable")
+    state = state[is_valid][order]
+    return FreeMotion(time[is_valid][order], state[:, :count] @ weights, state[:, rates] @ weights)
 
 
 def first_peaks(
@@ -150,23 +152,23 @@ class Prediction:
         self._accuracy = accuracy
         self._found: Any = lru_cache(maxsize=_CACHE_SIZE)(self._run)
 
-    def values(self, found: Array) -> dict[str, float]:
+    def values(self, estimates: Array) -> dict[str, float]:
         """Return the values of all parameters and circumstances by name, including known ones."""
-        return {**self._known, **dict(zip(self.names, found.tolist(), strict=True))}
+        return {**self._known, **dict(zip(self.names, estimates.tolist(), strict=True))}
 
-    def history(self, found: Array, measured: History) -> Array:
+    def history(self, estimates: Array, measured: History) -> Array:
         """Return the rotation that the gauge would show at the times of a history [rad]."""
-        values = self.values(found)
+        values = self.values(estimates)
         duration = (1.0 + RELEASE_MARGIN) * measured.span
         motion = self._found(release_response, *self._key(values), duration)
         since = measured.time - values[Circumstance.RELEASE_TIME]
         return values[Circumstance.GAUGE_OFFSET] + motion.at(since)
 
-    def peaks(self, found: Array, measured: MeasuredPeaks) -> tuple[Array, Array]:
+    def peaks(self, estimates: Array, measured: MeasuredPeaks) -> tuple[Array, Array]:
         """Return times [s] and rotations [rad] of the peaks that the gauge would show."""
-        values = self.values(found)
-        wanted = measured.rotation.size, self._run_duration(measured)
-        times, sizes = self._found(first_peaks, *self._key(values), *wanted)
+        values = self.values(estimates)
+        extent = measured.rotation.size, self._run_duration(measured)
+        times, sizes = self._found(first_peaks, *self._key(values), *extent)
         rotation = values[Circumstance.GAUGE_OFFSET] + measured.sides * sizes
         return values[Circumstance.RELEASE_TIME] + times, rotation
 
@@ -175,11 +177,11 @@ class Prediction:
         return parameters, values[Circumstance.INITIAL_ROTATION]
 
     def _run(
-        self, compute: Callable[..., Any], parameters: tuple[float, ...], *wanted: float
+        self, compute: Callable[..., Any], parameters: tuple[float, ...], *extent: float
     ) -> Any:
         """Compute a motion or its peaks from the parameters, initial rotation and so on."""
         values = dict(zip(self.trials.parameters, parameters, strict=True))
-        return compute(self.trials.assembly(values), *wanted, self._accuracy)
+        return compute(self.trials.assembly(values), *extent, self._accuracy)
 
     def _run_duration(self, measured: MeasuredPeaks) -> float:
         """Return the duration of a run that is likely to contain all peaks [s]."""
@@ -217,7 +219,7 @@ def start_values(
             math.hypot(arm, body.centre_height) / body.gyration_square_about(arm)
             for arm in (body.left, body.right)
         )
-        found = restitution_of(
+        restitution = restitution_of(
             about_offset,
             np.where(about_offset < 0.0, angles.left, angles.right),
             np.where(about_offset < 0.0, left / right, 1.0),
@@ -225,7 +227,7 @@ def start_values(
         )
         for name, place in trials.parameters.items():
             if place.argument == "restitution":
-                starts[name] = place.unknown(name).with_start(found)
+                starts[name] = place.unknown(name).with_start(restitution)
     limit = math.copysign(_MAX_INITIAL_RATIO * angles.on_side_of(first), first)
     rotation = Unknown(
         Circumstance.INITIAL_ROTATION, first, abs(first), min(limit, 0.0), max(limit, 0.0)
@@ -234,7 +236,7 @@ def start_values(
     release = Unknown(Circumstance.RELEASE_TIME, 0.0, period)
     if isinstance(measured, History):
         begin, end, span = float(measured.time[0]), float(measured.time[-1]), measured.span
-        values = {name: one.start for name, one in starts.items()}
+        values = {name: unknown.start for name, unknown in starts.items()}
         swing = release_response(
             trials.assembly(values), rotation.start, span, accuracy
         ).first_crossing()
@@ -246,4 +248,4 @@ def start_values(
     elif measured.time is not None:
         release = release.with_start(float(measured.time[0]))
     gauge = Unknown(Circumstance.GAUGE_OFFSET, offset, abs(first))
-    return {**starts, **{one.name: one for one in (rotation, release, gauge)}}
+    return {**starts, **{unknown.name: unknown for unknown in (rotation, release, gauge)}}

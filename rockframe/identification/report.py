@@ -36,7 +36,7 @@ def fit_verdict(
     values: Mapping[str, Any], names: Sequence[str], confidence: float, half_width: float
 ) -> str:
     """Return the result of a fit as a sentence."""
-    found = ", ".join(
+    results = ", ".join(
         f"{name.replace('_', ' ')} {_with_error(value, half_width * error)}"
         for name, value, error in zip(
             names, values["fitted_value"], values["standard_error"], strict=True
@@ -45,7 +45,7 @@ def fit_verdict(
     history = "measured_rotation" in values
     data = values["measured_rotation" if history else "measured_peak_rotation"]
     residual = degrees_text(float(values["rotation_rms_residual"]), 2)
-    begin = found[0].upper() + found[1:]
+    begin = results[0].upper() + results[1:]
     return (
         f"{begin} ({100.0 * confidence:g} %); residual {residual} (root mean square of "
         f"{len(data)} {'samples' if history else 'peaks'})."
@@ -108,9 +108,9 @@ def fit_dataset(
     """Return the results of a fit as a labelled dataset, and warn of reasons for doubt."""
     names, parameters = list(prediction.names), prediction.trials.parameters
     uncertainty = uncertainty_of(solution, confidence)
-    found = prediction.values(solution.values)
+    estimated = prediction.values(solution.values)
     error = dict(zip(names, uncertainty.standard_error.tolist(), strict=True))
-    value = np.array([found[name] for name in parameters])
+    value = np.array([estimated[name] for name in parameters])
     spread = np.array([error[name] for name in parameters])
     values: dict[str, Any] = {
         "fitted_value": value,
@@ -118,7 +118,7 @@ def fit_dataset(
         "lower_confidence_bound": value - uncertainty.half_width * spread,
         "upper_confidence_bound": value + uncertainty.half_width * spread,
         "start_value": np.array([place.start for place in parameters.values()]),
-        **{str(name): found[name] for name in Circumstance},
+        **{str(name): estimated[name] for name in Circumstance},
         **{f"{name}_error": error.get(name, math.nan) for name in Circumstance},
         "correlation": uncertainty.correlation,
         "fit_status": solution.status,
@@ -128,7 +128,7 @@ def fit_dataset(
     cautions = list(cautions_of(names, solution, uncertainty, values))
     for caution in cautions:
         warn(f"{OWNER}: {caution}", ModelWarning)
-    fitted = prediction.trials.system({name: found[name] for name in parameters})
+    fitted = prediction.trials.system({name: estimated[name] for name in parameters})
     attributes: dict[str, str | float | int] = {
         "verdict": fit_verdict(values, list(parameters), confidence, uncertainty.half_width),
         "confidence": confidence,
@@ -152,11 +152,11 @@ def fit_dataset(
 
 
 def _measured_and_fitted(
-    prediction: Prediction, measured: History | MeasuredPeaks, found: Array
+    prediction: Prediction, measured: History | MeasuredPeaks, estimates: Array
 ) -> Mapping[str, Array | float]:
     """Return measured and fitted values with their residuals, by their names in the schema."""
     if isinstance(measured, History):
-        fitted = prediction.history(found, measured)
+        fitted = prediction.history(estimates, measured)
         residual = measured.rotation - fitted
         return {
             "time": measured.time,
@@ -165,7 +165,7 @@ def _measured_and_fitted(
             "rotation_residual": residual,
             **_noise(residual),
         }
-    times, fitted = prediction.peaks(found, measured)
+    times, fitted = prediction.peaks(estimates, measured)
     residual = measured.rotation - fitted
     values: dict[str, Array | float] = {
         "measured_peak_rotation": measured.rotation,

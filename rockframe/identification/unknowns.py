@@ -47,7 +47,9 @@ class Unknown:
 
 def with_starts(unknowns: Sequence[Unknown], values: NDArray[np.float64]) -> list[Unknown]:
     """Return the unknowns with other start values, within their bounds."""
-    return [one.with_start(float(value)) for one, value in zip(unknowns, values, strict=True)]
+    return [
+        unknown.with_start(float(value)) for unknown, value in zip(unknowns, values, strict=True)
+    ]
 
 
 @dataclass(frozen=True)
@@ -98,7 +100,7 @@ class TrialSystems:
         for part in self._parts:
             for interface in part.interfaces if isinstance(part, Stack) else ():
                 yield from (
-                    f"{type(interface).__name__}.{one}" for one, _ in _declared_ratios(interface)
+                    f"{type(interface).__name__}.{name}" for name, _ in _declared_ratios(interface)
                 )
 
     def _parts_with(self, values: Mapping[str, float]) -> list[Component]:
@@ -123,7 +125,7 @@ class TrialSystems:
 
 def _declared_ratios(part: Component) -> list[tuple[str, Ratio[Any]]]:
     declared = sorted(part.declared().items())
-    return [(name, one) for name, one in declared if isinstance(one, Ratio)]
+    return [(name, parameter) for name, parameter in declared if isinstance(parameter, Ratio)]
 
 
 def _find_parameter(
@@ -142,15 +144,15 @@ def _find_parameter(
         raise ComponentError(msg)
     choice = ", ".join(repr(full) for full in (matches or known))
     if not matches and any(name in (full, full.partition(".")[2]) for full in inside):
-        found = f"of the parts of the system, which are {choice}" if known else "of other parts"
+        fitted = f"of the parts of the system, which are {choice}" if known else "of other parts"
         msg = (
             f"{OWNER}: {short_repr(name)} is a parameter of an interface of the Stack; fitted are "
             "those "
-            f"{found}. To find that of an interface, compare the measured rotation with runs of a "
+            f"{fitted}. To find that of an interface, compare the measured rotation with runs of a "
             "sweep over a function that returns the system"
         )
         raise ComponentError(msg)
-    found = "several parts have" if matches else "no part of the system has"
-    near = "" if matches else did_you_mean(name, {one.rpartition(".")[2] for one in known})
-    msg = f"{OWNER}: {found} the parameter {short_repr(name)}{near}; expected one of {choice}"
+    fault = "several parts have" if matches else "no part of the system has"
+    near = "" if matches else did_you_mean(name, {full.rpartition(".")[2] for full in known})
+    msg = f"{OWNER}: {fault} the parameter {short_repr(name)}{near}; expected one of {choice}"
     raise ComponentError(msg)

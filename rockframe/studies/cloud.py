@@ -143,17 +143,17 @@ def cloud_analysis(
     measure = measure_of_runs(runs, intensity, period, motions, owner=_OWNER)
     values = scalar_of(runs, response, label, owner=_OWNER)
     requested = [
-        _read_response(one, values, _OWNER, "limits")
-        for one in listed_limits(limits, owner=_OWNER)
-        if one != OVERTURNING
+        _read_response(limit, values, _OWNER, "limits")
+        for limit in listed_limits(limits, owner=_OWNER)
+        if limit != OVERTURNING
     ]
-    found = fit_cloud(runs, measure, values, least=least, owner=_OWNER)
+    cloud = fit_cloud(runs, measure, values, least=least, owner=_OWNER)
     words = " ".join(filter(None, [response.replace("_", " "), label]))
-    named = {f"{words} {one:g}{unit_suffix_of(values.attrs)}": one for one in requested}
+    named = {f"{words} {value:g}{unit_suffix_of(values.attrs)}": value for value in requested}
     levels = named | {OVERTURNING: math.inf}
-    dataset = _cloud_dataset(found, levels, measure, nominal, seed)
-    for one in ("cloud_response", "response_limit"):
-        dataset[one].attrs["units"] = unit_of(values.attrs)
+    dataset = _cloud_dataset(cloud, levels, measure, nominal, seed)
+    for name in ("cloud_response", "response_limit"):
+        dataset[name].attrs["units"] = unit_of(values.attrs)
     dataset.attrs |= {
         **attributes_of_system(runs),
         **period_attribute(runs, [intensity], period, owner=_OWNER),
@@ -161,7 +161,7 @@ def cloud_analysis(
         "response": response if label is None else f"{response} {label}",
         **({POOLED_ATTRIBUTE: ", ".join(pooled_axes)} if pooled_axes else {}),
     }
-    return dataset.assign_attrs(verdict=_sentence(dataset, found.motions_repeat))
+    return dataset.assign_attrs(verdict=_sentence(dataset, cloud.motions_repeat))
 
 
 class CloudFit(NamedTuple):
@@ -181,8 +181,8 @@ def fit_cloud(
         msg = f"{owner}: found runs without motions; expected those of many motions"
         raise StudyError(msg)
     intensities, response, overturned = (
-        flatten_like(one, runs["status"]).astype(np.float64)
-        for one in (measure, values, overturns(runs))
+        flatten_like(array, runs["status"]).astype(np.float64)
+        for array in (measure, values, overturns(runs))
     )
     response = np.abs(response)
     response = np.where(overturned == 1.0, np.inf, np.where(response < floor, 0.0, response))
@@ -215,7 +215,7 @@ def _cloud_dataset(
     curves = [curve_of_level(cloud, level, logs, of_bounds, seed) for level in levels.values()]
     name, over = str(measure.name), {"limit_state": len(levels)}
     line, logistic = cloud.regression or NO_LINE, cloud.overturning
-    found = build_dataset(
+    dataset = build_dataset(
         {
             "regression_intercept": line.intercept,
             "regression_slope": line.slope,
@@ -242,35 +242,35 @@ def _cloud_dataset(
         of_states[f"dispersion{end}"] = spreads[:, k]
     of_states["trial_count"] = np.full(len(levels), len(cloud.logs))
     of_states["left_out_count"] = np.full(len(levels), int((~runs.included).sum()))
-    found = with_variables(found, of_states, over=tuple(over))
+    dataset = with_variables(dataset, of_states, over=tuple(over))
     shares = {f"exceedance_probability{end}": points[:, k] for k, end in enumerate(BOUND_SUFFIXES)}
-    found = with_variables(found, shares, over=(*over, name))
-    found = with_labels(found, {name: (name, np.exp(logs), measure.attrs)})
-    found = with_variables(found, {"limit_state": np.array(list(levels), dtype=object)})
+    dataset = with_variables(dataset, shares, over=(*over, name))
+    dataset = with_labels(dataset, {name: (name, np.exp(logs), measure.attrs)})
+    dataset = with_variables(dataset, {"limit_state": np.array(list(levels), dtype=object)})
     counted = [
         (np.exp(cloud.logs)[:, None], (cloud.responses >= level).astype(np.float64))
         for level in levels.values()
     ]
-    return with_stripes(found, counted, over, confidence, measure.attrs)
+    return with_stripes(dataset, counted, over, confidence, measure.attrs)
 
 
-def _sentence(found: xr.Dataset, motions_repeat: bool) -> str:
+def _sentence(dataset: xr.Dataset, motions_repeat: bool) -> str:
     """Return the verdict in words: the line, and how many runs overturned."""
-    words = measure_words(str(found.attrs["intensity"]), found.attrs.get(PERIOD_ATTRIBUTE))
-    count, overturned = found.sizes["run"], int(found["cloud_overturned_count"])
-    resting = int(found["resting_count"])
-    response = str(found.attrs["response"]).replace("_", " ")
+    words = measure_words(str(dataset.attrs["intensity"]), dataset.attrs.get(PERIOD_ATTRIBUTE))
+    count, overturned = dataset.sizes["run"], int(dataset["cloud_overturned_count"])
+    resting = int(dataset["resting_count"])
+    response = str(dataset.attrs["response"]).replace("_", " ")
     text = f"Of {count} runs {overturned} overturned"
     text += f" and {resting} show no {response}" if resting else ""
-    if math.isnan(float(found["regression_slope"])):
+    if math.isnan(float(dataset["regression_slope"])):
         text += "; those between are too few, or of one intensity, for a line"
     else:
         text += (
             f"; the {response} of the others grows with "
-            f"power {float(found['regression_slope']):.3g} of {words}, dispersion "
-            f"{float(found['residual_dispersion']):.3g}"
+            f"power {float(dataset['regression_slope']):.3g} of {words}, dispersion "
+            f"{float(dataset['residual_dispersion']):.3g}"
         )
-    left_out = int(found["left_out_count"].max())
+    left_out = int(dataset["left_out_count"].max())
     text += f"; {left_out} are left out, without a verdict or an intensity" if left_out else ""
     text += "; no bounds, for motions were run more than once" if motions_repeat else ""
     return f"{text}."

@@ -129,12 +129,12 @@ def fit_logistic(logs: Array, verdict: AnyArray) -> Logistic:
         share = expit(design @ at)
         return design.T @ ((share * (1.0 - share))[:, None] * design)
 
-    found: Any = optimize.minimize(
+    result: Any = optimize.minimize(
         value, np.zeros(2), method="trust-exact", jac=slope, hess=curvature, options={"gtol": 1e-10}
     )
     unscale = np.array([[1.0, -middle / spread], [0.0, 1.0 / spread]])
-    best = unscale @ found.x
-    covariance = unscale @ np.linalg.inv(curvature(found.x)) @ unscale.T
+    best = unscale @ result.x
+    covariance = unscale @ np.linalg.inv(curvature(result.x)) @ unscale.T
     return Logistic(FragilityStatus.FITTED, best, np.asarray(covariance, dtype=np.float64))
 
 
@@ -175,18 +175,18 @@ class Cloud:
         overturning = self.overturning.probability(self.logs)
         moving = self.moving.probability(self.logs)
         overturned, dispersion = np.isinf(self.responses), self.regression.dispersion
-        found = np.where(
+        log_likelihoods = np.where(
             overturned,
             np.log(np.maximum(overturning, 1e-300)),
             np.log1p(-np.minimum(overturning, 1.0 - 1e-16)),
         )
         probability = np.where(self.responses > 0.0, moving, 1.0 - moving)
-        found[~overturned] += np.log(np.maximum(probability[~overturned], 1e-300))
+        log_likelihoods[~overturned] += np.log(np.maximum(probability[~overturned], 1e-300))
         normalized = self.regression.residuals / dispersion
-        found[self.is_regressed] += -0.5 * (normalized**2 + math.log(2.0 * math.pi)) - math.log(
-            dispersion
-        )
-        return found
+        log_likelihoods[self.is_regressed] += -0.5 * (
+            normalized**2 + math.log(2.0 * math.pi)
+        ) - math.log(dispersion)
+        return log_likelihoods
 
     def probabilities(self, logs: Array, level: float) -> Array:
         """Return the probability that a level is exceeded, :eq:`eq-cloud-fragility`."""
@@ -203,7 +203,9 @@ class Cloud:
         if self.regression is None or math.isinf(level):
             return overturning
         moving = self.moving.draw_curves(logs, rng, count)
-        coefficients = [one[:, None] for one in self.regression.draw_coefficients(rng, count)]
+        coefficients = [
+            coefficient[:, None] for coefficient in self.regression.draw_coefficients(rng, count)
+        ]
         return _exceedance_probability(overturning, moving, coefficients, logs, level)
 
 
@@ -240,9 +242,9 @@ def curve_of_level(
         rng = np.random.default_rng(seed)
         drawn = cloud.draw_curves(np.concatenate([logs, wide]), level, rng, _POSTERIOR_DRAWS)
         points[1:] = np.quantile(drawn[:, : len(logs)], tails, axis=0)
-        each = _median_dispersion(drawn[:, len(logs) :], wide)
+        estimates = _median_dispersion(drawn[:, len(logs) :], wide)
         # a median beyond the searched range is infinite, or zero where all of the curve lies above
-        every = [np.where(np.isnan(one), np.inf, one) for one in each]
+        every = [np.where(np.isnan(values), np.inf, values) for values in estimates]
         every[0][np.all(drawn[:, len(logs) :] >= 0.5, axis=1)] = -np.inf
         medians[1:] = np.exp(np.quantile(every[0], tails, method="inverted_cdf"))
         spreads[1:] = np.quantile(every[1], tails, method="inverted_cdf")
@@ -273,10 +275,10 @@ def _crossings(eta: Array, logs: Array, level: float) -> Array:
     """Return where curves first rise above a level; NaN where they do not."""
     above = eta >= level
     right = np.argmax(above, axis=1)
-    found = above.any(axis=1) & (right > 0)
+    crosses = above.any(axis=1) & (right > 0)
     right = np.maximum(right, 1)
     rows = np.arange(len(eta))
     low, high = eta[rows, right - 1], eta[rows, right]
     with np.errstate(invalid="ignore", divide="ignore"):
         at = logs[right - 1] + (level - low) / (high - low) * (logs[right] - logs[right - 1])
-    return np.where(found, at, np.nan)
+    return np.where(crosses, at, np.nan)

@@ -91,12 +91,14 @@ def subset_levels(
             scores, demands, origins = states[-1]
             noise = rng.standard_normal(scores.shape)
             candidates = math.sqrt(1.0 - step**2) * scores + step * noise
-            found = demand(f"level {number + 1:02d} step {number_of_step:02d}", candidates)
-            accepted = found >= threshold
-            left_out += int(np.isnan(found).sum())
+            candidate_demands = demand(
+                f"level {number + 1:02d} step {number_of_step:02d}", candidates
+            )
+            accepted = candidate_demands >= threshold
+            left_out += int(np.isnan(candidate_demands).sum())
             states.append((
                 np.where(accepted[:, None], candidates, scores),
-                np.where(accepted, found, demands),
+                np.where(accepted, candidate_demands, demands),
                 np.where(accepted, total_runs + np.arange(chains), origins),
             ))  # fmt: skip
             total_runs += chains
@@ -175,12 +177,12 @@ def sample_weights(levels: Sequence[Level]) -> list[Array]:
 
     Samples beyond a threshold have none: the next level represents them.
     """
-    found: list[Array] = []
+    weights: list[Array] = []
     probability = 1.0
     for number, level in enumerate(levels, start=1):
         is_counted = ~np.isnan(level.demands)
         if number < len(levels):
             is_counted &= ~level.exceeds
-        found.append(np.where(is_counted, probability / max(level.known_count, 1), 0.0))
+        weights.append(np.where(is_counted, probability / max(level.known_count, 1), 0.0))
         probability *= level.share
-    return found
+    return weights

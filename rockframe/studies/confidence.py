@@ -21,7 +21,10 @@ def read_shares(value: object, name: str, *, owner: str) -> Array:
     """Read an argument that is several shares."""
     listed = checked_list(value, owner=owner, name=name, of="numbers")
     return np.array(
-        [to_ratio(one, owner=owner, name=name, condition=SHARE, example="0.5") for one in listed]
+        [
+            to_ratio(share, owner=owner, name=name, condition=SHARE, example="0.5")
+            for share in listed
+        ]
     )
 
 

@@ -193,7 +193,7 @@ def critical_scale(
             bar.update(1)
             return shown
 
-        found = scan_scales(
+        scan = scan_scales(
             run_at,
             first_scales,
             max_runs=max_runs,
@@ -201,9 +201,9 @@ def critical_scale(
             resolution=finest,
             may_slide=may_slide,
         )
-    critical = least_overturning_scale(found.runs)
-    text = flips_sentence(found, width=width, resolution=finest)
-    if not found.completed:
+    critical = least_overturning_scale(scan.runs)
+    text = flips_sentence(scan, width=width, resolution=finest)
+    if not scan.completed:
         warn(f"{_OWNER}: interrupted; {text}", SolverWarning)
     attributes = {
         "verdict": text,
@@ -214,12 +214,12 @@ def critical_scale(
         "bracket_width": width,
         "model": system.setting.model,
         "accuracy": plan.accuracy_name,
-        **_cautions(system, plan_at, found, critical),
+        **_cautions(system, plan_at, scan, critical),
         **motion_attributes(motion),
         "system_json": system.assembly.json,
         "run_json": plan.to_json(),
     }
-    dataset = _scale_dataset(found, critical, uplift_scale, attributes)
+    dataset = _scale_dataset(scan, critical, uplift_scale, attributes)
     if measure is None:
         return dataset
     dataset = dataset.assign({measure.name: measure.at_scale(critical)})
@@ -243,24 +243,24 @@ def _uplift_scale(system: System, plan: Plan) -> float:
 
 
 def _cautions(
-    system: System, plan_at: Callable[[float], Plan], found: ScaleScan, critical: float
+    system: System, plan_at: Callable[[float], Plan], scan: ScaleScan, critical: float
 ) -> dict[str, str]:
     """Repeat the warnings of the run at the decisive scale; warn of runs without a verdict."""
     cautions: list[str] = []
-    undecided = [scale for scale, shown in found.runs.items() if shown.overturned is None]
+    undecided = [scale for scale, outcome in scan.runs.items() if outcome.overturned is None]
     if undecided:
         cautions.append(f"{_OWNER}: {unfinished_words(undecided)}")
         warn(cautions[0], SolverWarning)
-    moving = [scale for scale, shown in found.runs.items() if shown.in_motion]
+    moving = [scale for scale, outcome in scan.runs.items() if outcome.in_motion]
     if moving:
         cautions.append(
-            f"{_OWNER}: at {len(moving)} of {len(found.runs)} scales, such as {moving[0]:.4g}, "
+            f"{_OWNER}: at {len(moving)} of {len(scan.runs)} scales, such as {moving[0]:.4g}, "
             f"{STILL_MOVING}"
         )
         warn(cautions[-1], SolverWarning)
     decisive = critical
     if math.isnan(critical) and has_friction_limit(system.assembly):
-        decisive = max(found.runs)  # if none falls, it needs the most friction
+        decisive = max(scan.runs)  # if none falls, it needs the most friction
     if not math.isnan(decisive):
         repeated = run(system.assembly, plan_at(decisive))
         cautions += filter(None, [str(repeated.attrs.get("cautions", ""))])
@@ -281,14 +281,14 @@ def _scale_dataset(
             "scale_above": np.array([flip.above for flip in flips]),
             "overturns_above": np.array([flip.overturns_above for flip in flips], dtype=bool),
             "scale": np.array(list(scan.runs)),
-            "outcome": np.array([_OUTCOMES[one.overturned] for one in runs]),
+            "outcome": np.array([_OUTCOMES[outcome.overturned] for outcome in runs]),
         },
         attributes,
         title="Critical scale of a ground motion",
         source="scan and bisection of event-driven runs",
     )
     of_runs = {
-        "peak_rotation": np.array([one.peak for one in runs]) + 0.0,  # no negative zeros
-        "status": np.array([one.status for one in runs]),
+        "peak_rotation": np.array([outcome.peak for outcome in runs]) + 0.0,  # no negative zeros
+        "status": np.array([outcome.status for outcome in runs]),
     }
     return with_variables(dataset, of_runs, over=("scale",))

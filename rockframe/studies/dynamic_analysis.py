@@ -171,20 +171,20 @@ def incremental_dynamic_analysis(
     sizes = {**line_axes.sizes, MOTION: scan.sizes[MOTION]}
     shape = (len(states), *sizes.values())
     capacities = result.capacities(shape)
-    found = with_variables(
+    dataset = with_variables(
         scan, {**capacities, **result.flips(shape)}, over=("limit_state", *sizes)
     )
     censored = np.isinf(capacities["capacity_scale"]).sum(axis=-1)
-    found = with_variables(
-        found, {"censored_count": censored}, over=("limit_state", *line_axes.sizes)
+    dataset = with_variables(
+        dataset, {"censored_count": censored}, over=("limit_state", *line_axes.sizes)
     )
-    found = with_variables(found, labels_of_states(states))
+    dataset = with_variables(dataset, labels_of_states(states))
     if measure is not None:
-        found = found.assign(
+        dataset = dataset.assign(
             {measure.name: intensity_of_runs(scan, measure, by_name, owner=_OWNER)}
         )
-        found.attrs |= measure_attributes(measure.name, measure.period)
-    below, least = _overturned_at_least_scale(found), float(found[SCALE].min())
+        dataset.attrs |= measure_attributes(measure.name, measure.period)
+    below, least = _overturned_at_least_scale(dataset), float(dataset[SCALE].min())
     if below.any():
         which = "motions" if below.ndim == 1 else "lines"
         warn(
@@ -193,29 +193,29 @@ def incremental_dynamic_analysis(
             "below it; give lesser scales",
             ModelWarning,
         )
-    found.attrs |= {
+    dataset.attrs |= {
         "title": "Incremental dynamic analysis of a rocking system",
         "source": SCAN_SOURCE,
         "capacity": CAPACITY_DEFINITION,
         LIMITS_ATTRIBUTE: states_json(states),
         "resolution": finest,
         "bracket_width": width,
-        "verdict": _sentence(found, line_axes.sizes),
+        "verdict": _sentence(dataset, line_axes.sizes),
     }
-    return found
+    return dataset
 
 
-def _overturned_at_least_scale(found: xr.Dataset) -> Array:
+def _overturned_at_least_scale(dataset: xr.Dataset) -> Array:
     """Find the motions that overturned at the least scale: their capacities may lie below it."""
-    capacity = found["capacity_scale"].isel(limit_state=-1).to_numpy()
-    return capacity == float(found[SCALE].min())
+    capacity = dataset["capacity_scale"].isel(limit_state=-1).to_numpy()
+    return capacity == float(dataset[SCALE].min())
 
 
 def verdict_of_analysis(dataset: xr.Dataset) -> str:
     """Say under how many motions a dynamic analysis, or a part of it, overturned."""
     capacity = dataset["capacity_scale"]
-    whole = {"limit_state", MOTION} <= set(capacity.dims) and SCALE in dataset.dims
-    if not whole or str(capacity["limit_state"][-1].item()) != OVERTURNING:
+    is_complete = {"limit_state", MOTION} <= set(capacity.dims) and SCALE in dataset.dims
+    if not is_complete or str(capacity["limit_state"][-1].item()) != OVERTURNING:
         return cases_verdict(dataset)
     structures = {
         str(dim): size for dim, size in capacity.sizes.items() if dim not in ("limit_state", MOTION)
@@ -223,18 +223,18 @@ def verdict_of_analysis(dataset: xr.Dataset) -> str:
     return _sentence(dataset, structures)
 
 
-def _sentence(found: xr.Dataset, structures: Mapping[str, int]) -> str:
+def _sentence(dataset: xr.Dataset, structures: Mapping[str, int]) -> str:
     """Return the verdict in words: how many motions overturned, and from which scale on."""
-    of_overturning = found.isel(limit_state=-1)
+    of_overturning = dataset.isel(limit_state=-1)
     capacity = of_overturning["capacity_scale"].to_numpy()
     count, finite = capacity.size, np.isfinite(capacity)
-    motions = found.sizes[MOTION]
+    motions = dataset.sizes[MOTION]
     subject = f"{motions} motion{'s' if motions > 1 else ''}"
     if structures:
         combined = f"{math.prod(structures.values())} structures by {', '.join(structures)}"
         subject = f"{count} lines, of {combined} under {subject},"
     text = f"Of {subject} {int(finite.sum())} overturned"
-    below = _overturned_at_least_scale(found)
+    below = _overturned_at_least_scale(dataset)
     if finite.any() and below.all():
         text += f", at or below {capacity[finite].min():.4g} times the motion"
     elif finite.any():
@@ -244,14 +244,14 @@ def _sentence(found: xr.Dataset, structures: Mapping[str, int]) -> str:
     repeated = int((of_overturning["flip_count"].to_numpy() > 1).sum())
     if repeated:
         text += f"; under {repeated} the verdict changed more than once"
-    of_scan = str(found.attrs["verdict"])
+    of_scan = str(dataset.attrs["verdict"])
     interrupted = of_scan.endswith(INTERRUPTED_ENDING)
-    missing = int(overturns(found).isnull().sum())
+    missing = int(overturns(dataset).isnull().sum())
     if missing and not interrupted:
-        text += f"; {missing} of {found['status'].size} runs of the scan have no verdict"
-    slides = found["would_slide"].to_numpy() if "would_slide" in found else np.empty(0)
+        text += f"; {missing} of {dataset['status'].size} runs of the scan have no verdict"
+    slides = dataset["would_slide"].to_numpy() if "would_slide" in dataset else np.empty(0)
     if words := share_words(slides, runs="runs of the scan"):
         text += f"; {words}"
-    if words := slip_words(slips_of_cases(found), runs="runs of the scan"):
+    if words := slip_words(slips_of_cases(dataset), runs="runs of the scan"):
         text += f"; {words}"
     return f"{text}{INTERRUPTED_ENDING if interrupted else '.'}"

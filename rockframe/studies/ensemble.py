@@ -94,7 +94,7 @@ def ensemble_statistics(
         msg = f"{_OWNER}: {values.name} has no values"
         raise ComponentError(msg)
     lower, upper = _quantile_bounds(ordered, shares, level)
-    found = build_dataset(
+    dataset = build_dataset(
         {
             **_empirical_distribution(ordered, level),
             "quantile": shares,
@@ -113,9 +113,12 @@ def ensemble_statistics(
         source="empirical distribution",
     )
     if "units" in values.attrs:
-        for one in ("ordered_value", *(name for name in found if "quantile_value" in str(name))):
-            found[one].attrs["units"] = values.attrs["units"]
-    return found
+        for variable in (
+            "ordered_value",
+            *(name for name in dataset if "quantile_value" in str(name)),
+        ):
+            dataset[variable].attrs["units"] = values.attrs["units"]
+    return dataset
 
 
 def _values_of(runs: Any, name: str) -> xr.DataArray:
@@ -123,9 +126,9 @@ def _values_of(runs: Any, name: str) -> xr.DataArray:
         return runs
     dataset = checked_dataset(runs, owner=_OWNER)
     if not isinstance(cast("Any", name), str) or name not in dataset:
-        known = [str(one) for one in dataset]
-        found = f"{short_repr(name)}{did_you_mean(name, known)}"
-        msg = f"{_OWNER}: found no {found}; expected one of {', '.join(known)}"
+        known = [str(variable) for variable in dataset]
+        unknown = f"{short_repr(name)}{did_you_mean(name, known)}"
+        msg = f"{_OWNER}: found no {unknown}; expected one of {', '.join(known)}"
         raise SchemaError(msg)
     return dataset[name]
 

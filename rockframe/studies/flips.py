@@ -74,12 +74,12 @@ def scan_scales(
     intervals in which flips are likely are halved, below that scale and above it,
     :func:`rockframe.simulation.certify.scan.may_change_between`.
     """
-    least, *others = scales
+    least, *larger = scales
     side = Side(1.0, {least: run_at(least)}, [least])
     completed = True
     wide_intervals = partial(_wide_intervals, side, resolution, may_slide=may_slide)
     try:
-        for scale in others:
+        for scale in larger:
             side.add(scale, run_at(scale))
         while (gaps := list(wide_intervals())) and len(side.places) < max_runs:
             near, far = max(gaps, key=lambda ends: (ends[1] - ends[0]) / ends[1])
@@ -156,7 +156,7 @@ def _suspect_intervals(side: Side, *, up_to_first: bool) -> Iterator[tuple[float
 def _clearance(side: Side, near: float, far: float) -> float:
     """Return the smaller clearance of both runs to the overturning angle; 0 if it was passed."""
     ends = side.shown[near], side.shown[far]
-    return min(one.clearances[0] if one.within_the_angle else 0.0 for one in ends)
+    return min(run.clearances[0] if run.within_the_angle else 0.0 for run in ends)
 
 
 def _bisect(side: Side, run_at: RunAtScale, flip: Flip, width: float) -> None:
@@ -194,17 +194,17 @@ _MAX_LISTED_RANGES: Final = 3
 """Most ranges of scales without overturning that are named one by one."""
 
 
-def flips_sentence(found: ScaleScan, *, width: float, resolution: float = 1.0) -> str:
+def flips_sentence(scan: ScaleScan, *, width: float, resolution: float = 1.0) -> str:
     """Return in words from which scale the block overturns, where it stands again, and the gaps."""
     digits = max(_MIN_DIGITS, 1 + math.ceil(-math.log10(width)))
 
     def number(scale: float) -> str:
         return f"{scale:.{digits}g}"
 
-    scales = list(found.runs)
-    largest, flips = scales[-1], found.flips()
-    critical = least_overturning_scale(found.runs)
-    decided = [scale for scale, run in found.runs.items() if run.overturned is not None]
+    scales = list(scan.runs)
+    largest, flips = scales[-1], scan.flips()
+    critical = least_overturning_scale(scan.runs)
+    decided = [scale for scale, run in scan.runs.items() if run.overturned is not None]
     if not decided:
         text = "No run could be finished"
     elif math.isnan(critical):
@@ -219,25 +219,25 @@ def flips_sentence(found: ScaleScan, *, width: float, resolution: float = 1.0) -
         text += f", stands again {_range_words(gaps)}"
     plural = "" if len(scales) == 1 else "s"
     text += f"; {len(scales)} scale{plural} tried up to {number(largest)}"
-    if not math.isnan(gap := found.largest_gap):  # to two digits, rounded up
+    if not math.isnan(gap := scan.largest_gap):  # to two digits, rounded up
         size = 10.0 ** (math.floor(math.log10(gap)) - 1)
         text += f", at most {math.ceil(gap / size - _ROUNDING_TOLERANCE) * size:.2g} apart"
-    slide_text = share_words(np.array([run.slides for run in found.runs.values()]))
+    slide_text = share_words(np.array([run.slides for run in scan.runs.values()]))
     text += f"; {slide_text}" if slide_text else ""
-    slip_text = slip_words(np.array([run.slip for run in found.runs.values()]))
+    slip_text = slip_words(np.array([run.slip for run in scan.runs.values()]))
     text += f"; {slip_text}" if slip_text else ""
-    text += "." if found.completed else ", then interrupted."
-    first = next((one for one in flips if one.overturns_above), None)
+    text += "." if scan.completed else ", then interrupted."
+    first = next((flip for flip in flips if flip.overturns_above), None)
     end = largest
     if first is not None:  # runs without a verdict may leave its bracket wide
         wide = first.above - first.below > resolution * first.above
         end = first.above if wide else first.below
-    if found.resolved_up_to < end and critical != scales[0]:  # there is none below the least
+    if scan.resolved_up_to < end and critical != scales[0]:  # there is none below the least
         text += (
-            f" Beyond {number(found.resolved_up_to)} some are more than {100.0 * resolution:g} % "
+            f" Beyond {number(scan.resolved_up_to)} some are more than {100.0 * resolution:g} % "
             "apart, and a lesser scale between them may overturn."
         )
-    undecided = [scale for scale, run in found.runs.items() if run.overturned is None]
+    undecided = [scale for scale, run in scan.runs.items() if run.overturned is None]
     if undecided:
         text += f" {unfinished_words(undecided)}, the first at {number(undecided[0])}."
     return text

@@ -109,8 +109,8 @@ def fractile_curves(
     measure = measure_of_runs(runs, intensity, period, motions, owner=_OWNER)
     values = scalar_of(runs, response, label, owner=_OWNER)
     curves = _response_curves(runs, measure, abs(values))
-    low = max(float(one.intensities[0]) for one in curves)
-    high = min(float(one.intensities[-1]) for one in curves)
+    low = max(float(curve.intensities[0]) for curve in curves)
+    high = min(float(curve.intensities[-1]) for curve in curves)
     if not low < high:
         msg = (
             f"{_OWNER}: the motions have no range of {measure.name} in common: from {low:.4g} all "
@@ -119,27 +119,27 @@ def fractile_curves(
         raise StudyError(msg)
     intensities = np.linspace(low, high, _CURVE_POINTS)
     requested = _read_levels(levels, values, curves)
-    responses = np.stack([one.response_at(intensities) for one in curves])
-    reached = np.stack([one.first_intensities(requested) for one in curves])
+    responses = np.stack([curve.response_at(intensities) for curve in curves])
+    reached = np.stack([curve.first_intensities(requested) for curve in curves])
     name = str(measure.name)
-    found = build_dataset({}, {}, title=_TITLE, source="runs of scaled motions")
-    for one, value, over in (
+    dataset = build_dataset({}, {}, title=_TITLE, source="runs of scaled motions")
+    for variable, value, over in (
         ("motion_response", responses, (MOTION, name)),
         ("response_fractile", fractiles_of(responses, shares), ("quantile", name)),
         ("overturned_count", np.isinf(responses).sum(axis=0), (name,)),
         ("intensity_fractile", fractiles_of(reached, shares), ("quantile", _LEVEL_DIM)),
         ("unreached_count", np.isinf(reached).sum(axis=0), (_LEVEL_DIM,)),
     ):
-        found = with_variables(found, {one: value}, over=over)
-    names = np.array([one.name for one in curves], dtype=object)
-    found = with_variables(found, {MOTION: names, "quantile": shares})
-    found = with_labels(found, {name: (name, intensities, measure.attrs)})
-    found = with_variables(found, {_LEVEL_DIM: requested})
-    for one in ("motion_response", "response_fractile", _LEVEL_DIM):
-        found[one].attrs["units"] = unit_of(values.attrs)
-    found["intensity_fractile"].attrs["units"] = unit_of(measure.attrs)
+        dataset = with_variables(dataset, {variable: value}, over=over)
+    names = np.array([curve.name for curve in curves], dtype=object)
+    dataset = with_variables(dataset, {MOTION: names, "quantile": shares})
+    dataset = with_labels(dataset, {name: (name, intensities, measure.attrs)})
+    dataset = with_variables(dataset, {_LEVEL_DIM: requested})
+    for variable in ("motion_response", "response_fractile", _LEVEL_DIM):
+        dataset[variable].attrs["units"] = unit_of(values.attrs)
+    dataset["intensity_fractile"].attrs["units"] = unit_of(measure.attrs)
     attributes = period_attribute(runs, [intensity], period, owner=_OWNER)
-    return found.assign_attrs(
+    return dataset.assign_attrs(
         {**attributes_of_system(runs), "intensity": name, **attributes,
          "response": response if label is None else f"{response} {label}",
          "verdict": _sentence(curves, low, high, measure) + _left_out_sentence(curves, runs)}
@@ -159,16 +159,16 @@ class _ResponseCurve:
 
     def response_at(self, intensities: Array) -> Array:
         """Return the response at intensities, infinite where the block overturns."""
-        found = np.interp(intensities, self.points, self.values)
+        responses = np.interp(intensities, self.points, self.values)
         for first, last in self.overturning:
-            found[(intensities >= first) & (intensities <= last)] = np.inf
-        return found
+            responses[(intensities >= first) & (intensities <= last)] = np.inf
+        return responses
 
     def first_intensities(self, levels: Array) -> Array:
         """Return the least intensities at which levels are reached; infinite where they are not."""
         highest = np.maximum.accumulate(self.values)
         place = np.searchsorted(highest, levels, side="left")
-        found = np.full(levels.shape, self.overturning[0][0] if self.overturning else np.inf)
+        intensities = np.full(levels.shape, self.overturning[0][0] if self.overturning else np.inf)
         for k, (level, right) in enumerate(zip(levels, place, strict=True)):
             if right == len(highest):
                 continue
@@ -176,8 +176,8 @@ class _ResponseCurve:
             if right > 0:
                 ends = self.values[right - 1 : right + 1]
                 reached = np.interp(level, ends, self.points[right - 1 : right + 1])
-            found[k] = min(found[k], reached)
-        return found
+            intensities[k] = min(intensities[k], reached)
+        return intensities
 
 
 def _response_curves(
@@ -194,15 +194,15 @@ def _response_curves(
         )
         raise StudyError(msg)
     axis = wide[0]
-    others = [dim for dim in verdict.dims if dim not in (MOTION, axis)]
+    other_dims = [dim for dim in verdict.dims if dim not in (MOTION, axis)]
 
     def rows(array: xr.DataArray) -> Array:
-        laid = array.broadcast_like(verdict).isel(dict.fromkeys(others, 0))
+        laid = array.broadcast_like(verdict).isel(dict.fromkeys(other_dims, 0))
         return laid.transpose(MOTION, axis).to_numpy().astype(np.float64)
 
     intensities, responses, falls = rows(measure), rows(values), rows(verdict)
     names = runs[MOTION].to_numpy().astype(str)
-    found: list[_ResponseCurve] = []
+    curves: list[_ResponseCurve] = []
     for k, name in enumerate(names):
         known = ~np.isnan(falls[k]) & np.isfinite(intensities[k])
         known &= (falls[k] == 1.0) | np.isfinite(responses[k])
@@ -212,19 +212,19 @@ def _response_curves(
         order = np.argsort(intensities[k], kind="stable")
         order = order[known[order]]
         ranges = _overturning_ranges(runs, k, intensities[k], axis)
-        found.append(
+        curves.append(
             _response_curve(
                 name, intensities[k][order], responses[k][order], falls[k][order] == 1.0, ranges
             )
         )
-    return found
+    return curves
 
 
 def _overturning_ranges(
     runs: xr.Dataset, motion: int, intensities: Array, dim: str
 ) -> list[tuple[float, float]] | None:
     """Return the ranges that overturn, by the brackets of a dynamic analysis; None for a sweep."""
-    if dim != SCALE or not all(one in runs for one in ("scale_above", "exceeds_above")):
+    if dim != SCALE or not all(name in runs for name in ("scale_above", "exceeds_above")):
         return None
     last = runs.isel({"limit_state": -1, MOTION: motion}, missing_dims="ignore").squeeze()
     above, below, after = (
@@ -293,21 +293,21 @@ def fractiles_of(rows: Array, shares: Array) -> Array:
 def _read_levels(value: Any, values: xr.DataArray, curves: Sequence[_ResponseCurve]) -> Array:
     """Read the levels of the response, or give those from the least to the greatest."""
     if value is None:
-        every = np.concatenate([one.values for one in curves])
+        every = np.concatenate([curve.values for curve in curves])
         every = every[np.isfinite(every)]
         ends = (float(every.min()), float(every.max())) if len(every) else (0.0, 1.0)
         return np.linspace(*ends, _CURVE_POINTS + 1)[1:]  # every motion has reached the least
     unit = unit_of(values.attrs)
     if unit == Unit.ONE:
         listed = checked_list(value, owner=_OWNER, name="levels", of="numbers")
-        found = np.array([to_ratio(one, owner=_OWNER, name="levels") for one in listed])
+        levels = np.array([to_ratio(level, owner=_OWNER, name="levels") for level in listed])
     else:
         measure = Measure("a response", Unit(unit), f"1 {unit}")
-        found = np.array(to_si_values(value, measure, owner=_OWNER, name="levels"))
-    if not len(found) or not (np.diff(found) > 0.0).all():
+        levels = np.array(to_si_values(value, measure, owner=_OWNER, name="levels"))
+    if not len(levels) or not (np.diff(levels) > 0.0).all():
         msg = f"{_OWNER}: levels must be one or more, and increase, got {short_repr(value)}"
         raise ComponentError(msg)
-    return found
+    return levels
 
 
 def _sentence(
@@ -317,18 +317,18 @@ def _sentence(
     falls = [
         [
             (max(first, low), last)
-            for first, last in one.overturning
+            for first, last in curve.overturning
             if last >= low and first <= high
         ]
-        for one in curves
+        for curve in curves
     ]
     unit = unit_suffix_of(measure.attrs)
     motions = f"{len(curves)} motion{'s' if len(curves) > 1 else ''}"
     text = f"Of {motions} {sum(map(bool, falls))} overturned at some "
     text += f"{str(measure.name).replace('_', ' ')} from {low:.4g} to {high:.4g}{unit}"
     # the number of overturned motions grows only where one begins to overturn
-    for begin in sorted(first for each in falls for first, _ in each):
-        fell = sum(any(first <= begin <= last for first, last in each) for each in falls)
+    for begin in sorted(first for ranges in falls for first, _ in ranges):
+        fell = sum(any(first <= begin <= last for first, last in ranges) for ranges in falls)
         if fell >= 0.5 * len(curves):
             of_them = "half of them" if len(curves) > 1 else "first"
             return f"{text}, {of_them} at {begin:.4g}{unit}."
@@ -338,7 +338,7 @@ def _sentence(
 def _left_out_sentence(curves: Sequence[_ResponseCurve], runs: xr.Dataset) -> str:
     """Return in words how many runs were left out of the lines."""
     every = overturns(runs).size
-    missing = every - sum(len(one.intensities) for one in curves)
+    missing = every - sum(len(curve.intensities) for curve in curves)
     if not missing:
         return ""
     verb = "is" if missing == 1 else "are"

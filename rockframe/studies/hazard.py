@@ -135,8 +135,8 @@ def annual_rate(
     places = (dict(zip(status.dims, place, strict=True)) for place in np.ndindex(status.shape))
     rows = [_rate_of_state(curves.isel(place), curve, measure) for place in places]
     arrays = {name: np.array([row[name] for row in rows]) for name in rows[0]}
-    found = build_dataset(
-        {name: each.reshape((*status.shape, *each.shape[1:])) for name, each in arrays.items()},
+    dataset = build_dataset(
+        {name: array.reshape((*status.shape, *array.shape[1:])) for name, array in arrays.items()},
         {}, over=dims, title="Annual rate of exceeding limit states",
         source="integral of a fragility over a hazard curve",
     )  # fmt: skip
@@ -144,19 +144,19 @@ def annual_rate(
         "contributing_intensity": np.sqrt(_bin_edges(curve)[1:] * _bin_edges(curve)[:-1]),
         "quantile": np.array(_QUANTILES),
     }
-    kept = [str(name) for name in curves.coords if set(curves[name].dims) <= set(dims)]
-    found = with_labels(found, {name: curves[name].variable for name in kept})
-    found = with_variables(found, labels)
+    coordinates = [str(name) for name in curves.coords if set(curves[name].dims) <= set(dims)]
+    dataset = with_labels(dataset, {name: curves[name].variable for name in coordinates})
+    dataset = with_variables(dataset, labels)
     for name in ("quantile_intensity", "contributing_intensity"):
-        found[name].attrs["units"] = unit_of(curves[measure].attrs)
+        dataset[name].attrs["units"] = unit_of(curves[measure].attrs)
     attributes = {
         key: curves.attrs[key] for key in (PERIOD_ATTRIBUTE, "model") if key in curves.attrs
     }
-    found = found.assign_attrs(
+    dataset = dataset.assign_attrs(
         {**attributes, "intensity": measure, "confidence": curves.attrs.get("confidence", math.nan)}
     )
-    _warn_beyond_curve(found, curve)
-    return found.assign_attrs(verdict=_sentence(found))
+    _warn_beyond_curve(dataset, curve)
+    return dataset.assign_attrs(verdict=_sentence(dataset))
 
 
 def read_hazard(value: object, measure: xr.DataArray, between: object) -> HazardCurve:
@@ -251,27 +251,29 @@ def _intensity_measure(dataset: xr.Dataset) -> str:
 _WITH_FRAGILITY: Final = (FragilityStatus.FITTED, FragilityStatus.SEPARATED)
 
 
-def _rate_of_state(one: xr.Dataset, curve: HazardCurve, measure: str) -> dict[str, Any]:
+def _rate_of_state(fragility: xr.Dataset, curve: HazardCurve, measure: str) -> dict[str, Any]:
     """Return rate and contributions of one limit state; NaN without a fragility."""
     names = (
         "annual_rate", "annual_rate_lower_bound", "annual_rate_upper_bound",
         "unreached_rate_below", "unreached_rate_above", "outside_trials_share",
     )  # fmt: skip
-    if int(one["fragility_status"]) not in _WITH_FRAGILITY:
+    if int(fragility["fragility_status"]) not in _WITH_FRAGILITY:
         sizes = {"rate_share": _BINS, "quantile_intensity": len(_QUANTILES)}
         none = {name: np.full(size, np.nan) for name, size in sizes.items()}
         return dict.fromkeys(names, np.nan) | none
-    edges, parts = contributions(one, curve, measure)
+    edges, parts = contributions(fragility, curve, measure)
     rate = float(parts.sum())
     with np.errstate(invalid="ignore"):  # a rate of zero has no shares
         cumulative = np.concatenate([[0.0], np.cumsum(parts)]) / rate
     logs = np.log(edges)
     bounds = (
-        _rate_of_curve(one[f"exceedance_probability_{end}_bound"], one[measure], curve)
+        _rate_of_curve(fragility[f"exceedance_probability_{end}_bound"], fragility[measure], curve)
         for end in ("lower", "upper")
     )
-    outside = (float(contributions(one, part, measure)[1].sum()) for part in curve.extrapolations())
-    least, most = np.interp(np.log(_range_of_trials(one, measure)), logs, cumulative)
+    outside = (
+        float(contributions(fragility, part, measure)[1].sum()) for part in curve.extrapolations()
+    )
+    least, most = np.interp(np.log(_range_of_trials(fragility, measure)), logs, cumulative)
     numbers = rate, *bounds, *outside, 1.0 - (most - least)
     return dict(zip(names, numbers, strict=True)) | {
         "rate_share": np.diff(np.interp(np.log(_bin_edges(curve)), logs, cumulative)),
@@ -279,14 +281,14 @@ def _rate_of_state(one: xr.Dataset, curve: HazardCurve, measure: str) -> dict[st
     }
 
 
-def _range_of_trials(one: xr.Dataset, measure: str) -> tuple[float, float]:
+def _range_of_trials(fragility: xr.Dataset, measure: str) -> tuple[float, float]:
     """Return the least and the greatest intensity of trials.
 
     The curve is drawn over the range of all structures; a stripe may be a group of intensities
     around its own.
     """
-    along, stripes = one[measure].to_numpy(), one["stripe_intensity"].to_numpy()
-    (tried,) = np.nonzero(one["stripe_trials"].to_numpy() > 0)
+    along, stripes = fragility[measure].to_numpy(), fragility["stripe_intensity"].to_numpy()
+    (tried,) = np.nonzero(fragility["stripe_trials"].to_numpy() > 0)
     first, last = tried[[0, -1]]
     return (
         float(along[0] if first == 0 else stripes[first]),
@@ -298,14 +300,14 @@ def _bin_edges(curve: HazardCurve) -> Array:
     return np.geomspace(curve.intensities[0], curve.intensities[-1], _BINS + 1)
 
 
-def contributions(one: xr.Dataset, curve: HazardCurve, measure: str) -> tuple[Array, Array]:
+def contributions(fragility: xr.Dataset, curve: HazardCurve, measure: str) -> tuple[Array, Array]:
     """Return intensities, and the contributions to the rate between them [1/year]."""
     edges, rates, slopes = _subdivided(curve)
-    if "median_intensity" in one and "logistic_slope" not in one:
-        median, spread = float(one["median_intensity"]), float(one["dispersion"])
+    if "median_intensity" in fragility and "logistic_slope" not in fragility:
+        median, spread = float(fragility["median_intensity"]), float(fragility["dispersion"])
         return edges, lognormal_rates(median, spread, edges, rates, slopes)
     return edges, _integrated(
-        _interpolator(one["exceedance_probability"], one[measure]), edges, rates, slopes
+        _interpolator(fragility["exceedance_probability"], fragility[measure]), edges, rates, slopes
     )
 
 
@@ -366,10 +368,10 @@ def _interpolator(curve: xr.DataArray, along: xr.DataArray) -> Callable[[Array],
     slope = [(eta[k] - eta[k - 1]) / (logs[k] - logs[k - 1]) for k in (1, len(logs) - 1)]
 
     def at(value: Array) -> Array:
-        found = np.interp(value, logs, eta)
-        found = np.where(value < logs[0], eta[0] + max(slope[0], 0.0) * (value - logs[0]), found)
-        found = np.where(value > logs[-1], eta[-1] + max(slope[1], 0.0) * (value - logs[-1]), found)
-        return ndtr(found)
+        score = np.interp(value, logs, eta)
+        score = np.where(value < logs[0], eta[0] + max(slope[0], 0.0) * (value - logs[0]), score)
+        score = np.where(value > logs[-1], eta[-1] + max(slope[1], 0.0) * (value - logs[-1]), score)
+        return ndtr(score)
 
     return at
 
@@ -380,15 +382,15 @@ def _rate_of_curve(probability: xr.DataArray, along: xr.DataArray, curve: Hazard
     return float(_integrated(_interpolator(probability, along), *_subdivided(curve)).sum())
 
 
-def _warn_beyond_curve(found: xr.Dataset, curve: HazardCurve) -> None:
+def _warn_beyond_curve(dataset: xr.Dataset, curve: HazardCurve) -> None:
     """Warn if a part of the rate lies beyond the ends of the hazard curve."""
-    unit = unit_suffix_of(found["quantile_intensity"].attrs)
+    unit = unit_suffix_of(dataset["quantile_intensity"].attrs)
     ends = {"below": curve.intensities[0], "above": curve.intensities[-1]}
     missing: list[str] = []
     for side, end in ends.items():
         with np.errstate(invalid="ignore", divide="ignore"):
-            rate = found["annual_rate"] + found[f"unreached_rate_{side}"]
-            share = float((found[f"unreached_rate_{side}"] / rate).max(skipna=True))
+            rate = dataset["annual_rate"] + dataset[f"unreached_rate_{side}"]
+            share = float((dataset[f"unreached_rate_{side}"] / rate).max(skipna=True))
         if share > _WARNING_SHARE:
             missing.append(
                 f"{side} {end:.4g}{unit}, where it ends, {100.0 * share:.2g} % of the rate"
@@ -401,16 +403,16 @@ def _warn_beyond_curve(found: xr.Dataset, curve: HazardCurve) -> None:
         )
 
 
-def _sentence(found: xr.Dataset) -> str:
+def _sentence(dataset: xr.Dataset) -> str:
     """Return the verdict in words: rate of the last limit state, and contributing intensities."""
-    last = found.isel(limit_state=-1) if "limit_state" in found.dims else found
+    last = dataset.isel(limit_state=-1) if "limit_state" in dataset.dims else dataset
     state = str(last["limit_state"].item()) if "limit_state" in last.coords else "what was counted"
     rates = np.atleast_1d(last["annual_rate"].to_numpy()).ravel()
     known = rates[~np.isnan(rates)]
     if not len(known):
         return f"There is no fragility against {state}, and so no rate."
-    measure = measure_words(str(found.attrs["intensity"]), found.attrs.get(PERIOD_ATTRIBUTE))
-    unit = unit_suffix_of(found["quantile_intensity"].attrs)
+    measure = measure_words(str(dataset.attrs["intensity"]), dataset.attrs.get(PERIOD_ATTRIBUTE))
+    unit = unit_suffix_of(dataset["quantile_intensity"].attrs)
     if len(known) > 1:
         return f"Annual rate of {state}: from {known.min():.3g} to {known.max():.3g}."
     if known[0] == 0.0:

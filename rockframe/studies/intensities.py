@@ -136,8 +136,8 @@ class Intensity:
             msg = f"{owner}: intensity {name!r} needs {needed}, for example period={example}"
             raise ComponentError(msg)
         if not several:
-            one: Any = period
-            return cls(name, to_si(one, PERIOD, owner=owner, name="period", condition=POSITIVE))
+            single: Any = period
+            return cls(name, to_si(single, PERIOD, owner=owner, name="period", condition=POSITIVE))
         periods = tuple(checked_periods(period, owner=owner).tolist())
         if periods[0] <= 0.0:
             msg = f"{owner}: periods must be above zero, whose logarithm is averaged"
@@ -149,11 +149,11 @@ class Intensity:
         if isinstance(self.period, tuple):
             return float(average_spectral_acceleration(motion, (self.period, "s"))[self.name])
         if self.period is not None:
-            found = response_spectrum(motion, [quantity(self.period, PERIOD)])[self.name]
-            return float(found.squeeze())
+            spectrum = response_spectrum(motion, [quantity(self.period, PERIOD)])[self.name]
+            return float(spectrum.squeeze())
         if self.name == VELOCITY_ACCELERATION_RATIO:
             names = "peak_ground_velocity", "peak_ground_acceleration"
-            velocity, acceleration = (measure_of_ground(motion, one) for one in names)
+            velocity, acceleration = (measure_of_ground(motion, name) for name in names)
             return velocity / acceleration
         return measure_of_ground(motion, self.name)
 
@@ -201,9 +201,9 @@ def _aligned_with_runs(runs: xr.Dataset, array: xr.DataArray, owner: str) -> xr.
         if dim in array.indexes and dim in runs.indexes and not twice:
             array = array.reindex({dim: runs.indexes[dim]})
         elif twice or array.sizes[dim] != runs.sizes[dim]:
-            found = "labels that stand twice" if twice else f"{array.sizes[dim]} values"
+            words = "labels that stand twice" if twice else f"{array.sizes[dim]} values"
             msg = (
-                f"{owner}: the intensity {array.name!r} has {found} along {str(dim)!r}, of which "
+                f"{owner}: the intensity {array.name!r} has {words} along {str(dim)!r}, of which "
                 f"the runs have {runs.sizes[dim]}"
             )
             raise ComponentError(msg)
@@ -231,14 +231,14 @@ def period_attribute(
     runs: xr.Dataset | None, measures: Iterable[object], period: PeriodLike | None, *, owner: str
 ) -> dict[str, Any]:
     """Return the period of a spectral measure, or those of an average, as an attribute."""
-    named = [measure_name(one) for one in measures if not isinstance(one, xr.DataArray)]
+    named = [measure_name(measure) for measure in measures if not isinstance(measure, xr.DataArray)]
     if period is not None:
         several = AVERAGE if AVERAGE in named else SPECTRAL_ACCELERATION
         return recorded_period(Intensity.read(several, period, owner=owner).period)
     if (
         runs is None
         or PERIOD_ATTRIBUTE not in runs.attrs
-        or not any(one in _PERIOD_DEPENDENT for one in named)
+        or not any(name in _PERIOD_DEPENDENT for name in named)
     ):
         return {}
     return {PERIOD_ATTRIBUTE: runs.attrs[PERIOD_ATTRIBUTE]}
@@ -253,8 +253,8 @@ def intensity_of_runs(
     before = motions_of_runs(runs, motions, owner=owner)
     factor = _scale_factors(runs, before, owner)
     measured = map_motions(runs, before, intensity.compute)
-    found = measured * np.abs(factor) ** SCALE_EXPONENTS[intensity.name]
-    return found.assign_attrs(intensity.attributes()).rename(intensity.name)
+    values = measured * np.abs(factor) ** SCALE_EXPONENTS[intensity.name]
+    return values.assign_attrs(intensity.attributes()).rename(intensity.name)
 
 
 def motions_of_runs(runs: xr.Dataset, value: object, *, owner: str) -> dict[str, GroundMotion]:
@@ -274,11 +274,11 @@ def motions_of_runs(runs: xr.Dataset, value: object, *, owner: str) -> dict[str,
         raise StudyError(msg)
     which = [name for name in names if name in used]
     every = unscaled_motions(runs.attrs, which, value, store_of(runs), owner=owner)
-    found = {name: motion for name, motion in every.items() if motion is not None}
-    if len(found) < len(every):
+    motions = {name: motion for name, motion in every.items() if motion is not None}
+    if len(motions) < len(every):
         msg = f"{owner}: the sweep has no motions of its own, of which there is an intensity"
         raise StudyError(msg)
-    return found
+    return motions
 
 
 def map_motions(
@@ -295,7 +295,7 @@ def _scale_factors(
     runs: xr.Dataset, motions: Mapping[str, GroundMotion], owner: str
 ) -> xr.DataArray:
     """Return the factor by which the motion of each case was multiplied."""
-    axes = [one for one in json.loads(runs.attrs["axes_json"]) if one["changes"] == MOTION]
+    axes = [axis for axis in json.loads(runs.attrs["axes_json"]) if axis["changes"] == MOTION]
     if not axes:
         return xr.DataArray(1.0)
     name = axes[0]["name"]
@@ -305,9 +305,9 @@ def _scale_factors(
 
     def unit_factor(motion: GroundMotion) -> float:
         """Return the factor that reaches the unit of the target."""
-        one = motion_of_case(motion, name, 1.0, runs.attrs.get("spectral_period"))
+        scaled = motion_of_case(motion, name, 1.0, runs.attrs.get("spectral_period"))
         at = int(np.argmax(np.abs(motion.si.horizontal.samples)))
-        return abs(float(one.si.horizontal.samples[at] / motion.si.horizontal.samples[at]))
+        return abs(float(scaled.si.horizontal.samples[at] / motion.si.horizontal.samples[at]))
 
     return labels * map_motions(runs, motions, unit_factor)
 
@@ -351,8 +351,8 @@ class ScaledIntensity:
     def at_scale(self, scale: float) -> xr.DataArray:
         """Return the measure of the scaled motion; NaN unless the scale is above zero."""
         motion = self._motion.scaled(scale) if scale > 0.0 else self._motion
-        found = self._measures(motion)[self.name].isel(dict.fromkeys(SCHEMA[self.name].dims, 0))
-        return found if scale > 0.0 else xr.full_like(found, np.nan)
+        intensity = self._measures(motion)[self.name].isel(dict.fromkeys(SCHEMA[self.name].dims, 0))
+        return intensity if scale > 0.0 else xr.full_like(intensity, np.nan)
 
     def _measures(self, motion: GroundMotion) -> xr.Dataset:
         if self.period is not None:

@@ -67,17 +67,17 @@ def limit_states(
     items: Iterable[object], *, owner: str, name: str = "limits"
 ) -> tuple[LimitState, ...]:
     """Read limit states, each once, in the order in which they are given; overturning is last."""
-    found: dict[str, LimitState] = {}
-    for one in listed_limits(items, owner=owner, name=name):
-        if isinstance(one, tuple):
-            state = _variable_limit(cast("tuple[Any, ...]", one), owner)
-        elif isinstance(one, str) and one in (UPLIFT, OVERTURNING):
-            state = LimitState(0.0 if one == UPLIFT else 1.0)
+    states: dict[str, LimitState] = {}
+    for limit in listed_limits(items, owner=owner, name=name):
+        if isinstance(limit, tuple):
+            state = _variable_limit(cast("tuple[Any, ...]", limit), owner)
+        elif isinstance(limit, str) and limit in (UPLIFT, OVERTURNING):
+            state = LimitState(0.0 if limit == UPLIFT else 1.0)
         else:
-            state = LimitState(_rotation_limit(one, owner, name))
-        found.setdefault(state.name, state)
-    found.pop(OVERTURNING, None)
-    return (*found.values(), LimitState(1.0))
+            state = LimitState(_rotation_limit(limit, owner, name))
+        states.setdefault(state.name, state)
+    states.pop(OVERTURNING, None)
+    return (*states.values(), LimitState(1.0))
 
 
 def listed_limits(value: object, *, owner: str, name: str = "limits") -> list[Any]:
@@ -150,7 +150,7 @@ def states_json(states: Sequence[LimitState]) -> str:
 def states_of(analysis: xr.Dataset) -> tuple[LimitState, ...]:
     """Return the limit states that a dynamic analysis, or a part of it, still has."""
     names = np.atleast_1d(analysis["limit_state"].to_numpy()).tolist()
-    every = [LimitState(*one) for one in json.loads(analysis.attrs[LIMITS_ATTRIBUTE])]
+    every = [LimitState(*row) for row in json.loads(analysis.attrs[LIMITS_ATTRIBUTE])]
     return tuple(state for state in every if state.name in names)
 
 
@@ -251,6 +251,6 @@ def _scalar_hint(runs: xr.Dataset, name: str) -> str:
             "; a sweep has it with points={...}, which names points of the body, or with "
             "outputs=[], and then the histories of all cases, too"
         )
-    numbers = [str(one) for one, values in runs.items() if values.dtype.kind in "fiu"]
+    numbers = [str(variable) for variable, values in runs.items() if values.dtype.kind in "fiu"]
     near = did_you_mean(name, numbers)
     return f"{near}; they have {', '.join(numbers)}"

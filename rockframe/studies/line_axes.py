@@ -36,9 +36,9 @@ class LineAxes:
         """Return a table of all combinations of values for each of some rows; last axis fastest."""
         places = np.indices(tuple(self.sizes.values()))
         count = math.prod(self.sizes.values())
-        repeats = max((len(each) for each, _ in rows.values()), default=1)
-        found = {name: (np.repeat(each, count), unit) for name, (each, unit) in rows.items()}
-        return found | {
+        repeats = max((len(values) for values, _ in rows.values()), default=1)
+        table = {name: (np.repeat(values, count), unit) for name, (values, unit) in rows.items()}
+        return table | {
             axis.name: (np.tile(axis.values[place.ravel()], repeats), axis.unit or str(Unit.ONE))
             for axis, place in zip(self.axes, places, strict=True)
         }
@@ -59,15 +59,15 @@ def unstack_cases(
     runs: xr.Dataset, sizes: Mapping[str, int], labels: Mapping[str, xr.Variable]
 ) -> xr.Dataset:
     """Return a dataset with several dimensions in place of the rows of a table."""
-    found: dict[Hashable, xr.Variable] = {}
-    for name, one in runs.variables.items():
+    variables: dict[Hashable, xr.Variable] = {}
+    for name, variable in runs.variables.items():
         if name == CASE or name in labels:
             continue
-        wide = one.unstack({CASE: dict(sizes)}) if CASE in one.dims else one
-        others = [dim for dim in wide.dims if dim not in sizes]
-        found[name] = wide.transpose(*(dim for dim in sizes if dim in wide.dims), *others)
-    made = xr.Dataset(found, attrs=runs.attrs)
-    made = made.set_coords([one for one in runs.coords if one in found])
+        wide = variable.unstack({CASE: dict(sizes)}) if CASE in variable.dims else variable
+        other_dims = [dim for dim in wide.dims if dim not in sizes]
+        variables[name] = wide.transpose(*(dim for dim in sizes if dim in wide.dims), *other_dims)
+    made = xr.Dataset(variables, attrs=runs.attrs)
+    made = made.set_coords([name for name in runs.coords if name in variables])
     return with_labels(made, labels)
 
 
@@ -85,22 +85,24 @@ def read_line_axes(
     if not isinstance(value, Mapping):
         msg = f"{owner}: axes must be a mapping of names to values, got {short_repr(value)}"
         raise StudyError(msg)
-    found, faults = list[Axis](), list[str]()
+    line_axes, faults = list[Axis](), list[str]()
     for name, values in cast("Mapping[Any, Any]", value).items():
         if name in SWEEP_ARGUMENT_NAMES:
             faults.append(f"{owner} takes no {name!r}, as rf.sweep does")
             continue
         try:
-            found.append(scene.axis(str(name), values))
+            line_axes.append(scene.axis(str(name), values))
         except RockframeError as problem:
             reasons = problem.faults if isinstance(problem, StudyError) else (str(problem),)
             argument = did_you_mean(name, argument_names)
-            faults += [one if argument in one else f"{one}{argument}" for one in reasons]
-    for axis in found:
+            faults += [
+                reason if argument in reason else f"{reason}{argument}" for reason in reasons
+            ]
+    for axis in line_axes:
         if axis.changes is Changes.MOTION:
             faults.append(f"axis {axis.name!r} scales the motion, as scale does; give scale alone")
         faults += faults_of_values(axis.name, axis.values)
-    faults += scene.faults([*own_axes, *found])
+    faults += scene.faults([*own_axes, *line_axes])
     if faults:
         raise StudyError(*faults)
-    return LineAxes(tuple(found))
+    return LineAxes(tuple(line_axes))

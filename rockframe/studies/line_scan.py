@@ -147,14 +147,14 @@ class Bracket:
 
 def find_brackets(scales: Array, verdicts: Array) -> list[Bracket]:
     """Find all changes among verdicts."""
-    found: list[Bracket] = []
+    brackets: list[Bracket] = []
     for verdict, line in np.ndindex(verdicts.shape[:2]):
         along = verdicts[verdict, line]
         (known,) = np.nonzero(~np.isnan(along))
         for k in np.flatnonzero(np.diff(along[known]) != 0.0):
             ends = known[k : k + 2]
-            found.append(Bracket(verdict, line, *scales[ends].tolist(), *along[ends].tolist()))
-    return found
+            brackets.append(Bracket(verdict, line, *scales[ends].tolist(), *along[ends].tolist()))
+    return brackets
 
 
 def bisect_brackets(
@@ -171,28 +171,38 @@ def bisect_brackets(
     remaining = list(brackets)
     completed = True
     for number in range(1, MAX_ROUNDS + 1):
-        wide = [one for one in remaining if one.above - one.below > width * one.above]
-        done += [one for one in remaining if one.above - one.below <= width * one.above]
+        wide = [
+            bracket
+            for bracket in remaining
+            if bracket.above - bracket.below > width * bracket.above
+        ]
+        done += [
+            bracket
+            for bracket in remaining
+            if bracket.above - bracket.below <= width * bracket.above
+        ]
         remaining = []
         if not wide:
             break
         # brackets of several verdicts may have the same middle
-        requested = sorted({(one.line, one.middle) for one in wide})
+        requested = sorted({(bracket.line, bracket.middle) for bracket in wide})
         try:
-            found, completed = run_at(f"round {number:02d}", requested)
+            verdicts, completed = run_at(f"round {number:02d}", requested)
         except KeyboardInterrupt:  # between the runs of two rounds
             done, completed = [*done, *wide], False
             break
         position = {case: k for k, case in enumerate(requested)}
-        for one in wide:
-            verdict = float(found[one.verdict, position[one.line, one.middle]])
+        for bracket in wide:
+            verdict = float(verdicts[bracket.verdict, position[bracket.line, bracket.middle]])
             if np.isnan(verdict):
-                done.append(one)
+                done.append(bracket)
             else:
-                remaining += one.halves(verdict)
+                remaining += bracket.halves(verdict)
         if not completed:
             break
-    ordered = sorted([*done, *remaining], key=lambda one: (one.verdict, one.line, one.below))
+    ordered = sorted(
+        [*done, *remaining], key=lambda bracket: (bracket.verdict, bracket.line, bracket.below)
+    )
     return ordered, completed
 
 
@@ -201,11 +211,13 @@ def bracket_arrays(
 ) -> tuple[Array, Array, Array, Array]:
     """Arrange brackets in arrays: lower and upper scales, and the verdicts there."""
     rows: dict[tuple[int, int], list[Bracket]] = {}
-    for one in brackets:
-        rows.setdefault((one.verdict, one.line), []).append(one)
+    for bracket in brackets:
+        rows.setdefault((bracket.verdict, bracket.line), []).append(bracket)
     values = np.full((4, *shape, max(map(len, rows.values()), default=0)), np.nan)
     for place, several in rows.items():
-        numbers = [(one.below, one.above, one.before, one.after) for one in several]
+        numbers = [
+            (bracket.below, bracket.above, bracket.before, bracket.after) for bracket in several
+        ]
         values[(slice(None), *place, slice(len(several)))] = np.transpose(numbers)
     below, above, before, after = values
     return below, above, before, after
@@ -221,7 +233,7 @@ class LineVerdicts:
 
     def with_runs(self, cases: LineScales, verdicts: Array, moved: AnyArray) -> "LineVerdicts":
         """Add cases, and what they showed."""
-        lines, scales = (np.array(each) for each in zip(*cases, strict=True))
+        lines, scales = (np.array(values) for values in zip(*cases, strict=True))
         all_scales = np.union1d(self.scales, scales)
         all_verdicts = np.full((*self.verdicts.shape[:2], len(all_scales)), np.nan)
         all_moved = np.ones(all_verdicts.shape[1:], dtype=bool)
@@ -245,12 +257,12 @@ class LineVerdicts:
 
     def gap_midpoints(self, resolution: float) -> LineScales:
         """Return lines and the middles of their gaps that are wider than the resolution."""
-        found = set[tuple[int, float]]()
+        midpoints = set[tuple[int, float]]()
         for verdict, line in np.ndindex(self.verdicts.shape[:2]):
             near, far = self.gaps(verdict, line)
             middle = 0.5 * (near + far)
-            found |= {(line, one) for one in middle[far - near > resolution * far].tolist()}
-        return sorted(found)
+            midpoints |= {(line, scale) for scale in middle[far - near > resolution * far].tolist()}
+        return sorted(midpoints)
 
     @property
     def resolution(self) -> Array:
@@ -258,14 +270,14 @@ class LineVerdicts:
 
         It is 1 where the least scale exceeds already: the gap extends to zero.
         """
-        found = np.zeros(self.verdicts.shape[:2])
-        for place in np.ndindex(found.shape):
+        widest = np.zeros(self.verdicts.shape[:2])
+        for place in np.ndindex(widest.shape):
             near, far = self.gaps(*place)
             along = self.verdicts[place]
             along = along[~np.isnan(along)]
             at_once = not len(along) or along[0] == 1.0
-            found[place] = 1.0 if at_once else np.max((far - near) / far, initial=0.0)
-        return found
+            widest[place] = 1.0 if at_once else np.max((far - near) / far, initial=0.0)
+        return widest
 
     @property
     def first_exceedance(self) -> Array:
@@ -302,7 +314,7 @@ class LineResults:
     def arrays(self, shape: tuple[int, ...]) -> Iterator[Array]:
         """Return lower and upper scales of brackets, and the verdicts there."""
         every = bracket_arrays(self.brackets, self.verdicts.verdicts.shape[:2])
-        return (one.reshape((*shape, -1)) for one in every)
+        return (array.reshape((*shape, -1)) for array in every)
 
 
 @dataclass(frozen=True, eq=False)
@@ -373,10 +385,10 @@ class LineScan:
                 break
             tried |= set(requested)
             try:
-                runs, found, completed = self._run_at(rounds, f"finer {number:02d}", requested)
+                runs, shown, completed = self._run_at(rounds, f"finer {number:02d}", requested)
             except KeyboardInterrupt:  # between the runs of two rounds
                 return verdicts, False
-            verdicts = verdicts.with_runs(requested, found, _has_moved(runs).to_numpy())
+            verdicts = verdicts.with_runs(requested, shown, _has_moved(runs).to_numpy())
             if not completed:
                 return verdicts, False
         return verdicts, True
@@ -385,7 +397,7 @@ class LineScan:
         self, rounds: SweepRounds, part: str, requested: LineScales
     ) -> tuple[xr.Dataset, Array, bool]:
         """Run lines at their own scales; give runs, verdicts, and whether this was completed."""
-        lines, scales = (np.array(each) for each in zip(*requested, strict=True))
+        lines, scales = (np.array(values) for values in zip(*requested, strict=True))
         names = list(self.motions)
         rows, motions = np.divmod(lines, len(names))
         cases = {**self._row_columns(rows), SCALE: scales, MOTION: [names[k] for k in motions]}

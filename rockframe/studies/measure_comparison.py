@@ -120,14 +120,14 @@ def compare_intensities(
     if isinstance(measures, xr.DataArray):
         measures = [measures]
     listed = [
-        _measure_and_period(one)
-        for one in checked_list(measures, owner=_OWNER, name="measures", of="measures")
+        _measure_and_period(item)
+        for item in checked_list(measures, owner=_OWNER, name="measures", of="measures")
     ]
     pooled_axes = checked_list(pooled, owner=_OWNER, name="pooled", of="names")
-    check_one_structure(runs, pooled_axes, [one for one, _ in listed], owner=_OWNER)
-    for one, period in listed:
-        measure = measure_of_runs(runs, one, period, motions, owner=_OWNER)
-        attributes = period_attribute(runs, [one], period, owner=_OWNER)
+    check_one_structure(runs, pooled_axes, [given for given, _ in listed], owner=_OWNER)
+    for given, period in listed:
+        measure = measure_of_runs(runs, given, period, motions, owner=_OWNER)
+        attributes = period_attribute(runs, [given], period, owner=_OWNER)
         cloud, included, _ = fit_cloud(runs, measure, values, least=least, owner=_OWNER)
         if cloud.regression is None:
             msg = (
@@ -139,19 +139,21 @@ def compare_intensities(
         named.append(measure_words(str(measure.name), attributes.get(PERIOD_ATTRIBUTE)))
         clouds.append(cloud)
         included_runs.append(included)
-    if not clouds or any(not np.array_equal(included_runs[0], one) for one in included_runs):
+    if not clouds or any(
+        not np.array_equal(included_runs[0], included) for included in included_runs
+    ):
         msg = f"{_OWNER}: measures must be one or more, all known of the same runs, got {named}"
         raise ComponentError(msg)
     if len(set(named)) < len(named):
         msg = f"{_OWNER}: measures are named twice: {', '.join(named)}"
         raise ComponentError(msg)
     covariates = {
-        name: flatten_like(one, runs["status"]).astype(np.float64)[included_runs[0]]
-        for name, one in _read_covariates(runs, against).items()
+        name: flatten_like(array, runs["status"]).astype(np.float64)[included_runs[0]]
+        for name, array in _read_covariates(runs, against).items()
     }
-    found = _comparison_dataset(named, clouds, covariates)
+    dataset = _comparison_dataset(named, clouds, covariates)
     words = response if label is None else f"{response} {label}"
-    return found.assign_attrs(response=words, verdict=_sentence(found))
+    return dataset.assign_attrs(response=words, verdict=_sentence(dataset))
 
 
 def _measure_and_period(value: object) -> tuple[Any, Any]:
@@ -170,15 +172,18 @@ def _read_covariates(
     """Read what the response should not depend on: numbers of the motions by their names."""
     if isinstance(values, Mapping):
         table = values
-        return {str(name): _covariate_of_runs(runs, str(name), one) for name, one in table.items()}
-    found: dict[str, xr.DataArray] = {}
+        return {
+            str(name): _covariate_of_runs(runs, str(name), numbers)
+            for name, numbers in table.items()
+        }
+    covariates: dict[str, xr.DataArray] = {}
     for name in checked_list(values, owner=_OWNER, name="against", of="names"):
-        one = column_of_runs(runs, name)
-        if not isinstance(one, xr.DataArray) or not set(one.dims) <= set(runs["status"].dims):
+        column = column_of_runs(runs, name)
+        if not isinstance(column, xr.DataArray) or not set(column.dims) <= set(runs["status"].dims):
             msg = f"{_OWNER}: against names {short_repr(name)}, which is no coordinate of the runs"
             raise ComponentError(msg)
-        found[str(name)] = one
-    return found
+        covariates[str(name)] = column
+    return covariates
 
 
 def _covariate_of_runs(runs: xr.Dataset, name: str, value: Any) -> xr.DataArray:
@@ -188,11 +193,11 @@ def _covariate_of_runs(runs: xr.Dataset, name: str, value: Any) -> xr.DataArray:
     labels = runs[MOTION].to_numpy().astype(str)
     if isinstance(value, Mapping | pd.Series):
         table = dict(cast("Any", value).items())
-        missing = [str(one) for one in np.unique(labels) if one not in table]
+        missing = [str(label) for label in np.unique(labels) if label not in table]
         if missing:
             msg = f"{_OWNER}: against has no {name} of the motion {missing[0]!r}"
             raise ComponentError(msg)
-        values = [table[str(one)] for one in labels.ravel()]
+        values = [table[str(label)] for label in labels.ravel()]
     else:
         values = checked_list(value, owner=_OWNER, name=f"against[{name!r}]", of="numbers")
         if runs[MOTION].dims != (MOTION,) or len(values) != labels.size:
@@ -209,22 +214,22 @@ def _comparison_dataset(
     names_of_measures: Sequence[str], clouds: Sequence[Cloud], covariates: Mapping[str, Array]
 ) -> xr.Dataset:
     """Return a dataset of the results of all measures."""
-    lines = [one.regression for one in clouds if one.regression is not None]
-    log_likelihoods = np.stack([one.log_likelihoods() for one in clouds])
+    lines = [cloud.regression for cloud in clouds if cloud.regression is not None]
+    log_likelihoods = np.stack([cloud.log_likelihoods() for cloud in clouds])
     information = (log_likelihoods - log_likelihoods[0]) / math.log(2.0)
     count = log_likelihoods.shape[1]
     values: dict[str, Any] = {
-        "regression_slope": [one.slope for one in lines],
-        "residual_dispersion": [one.dispersion for one in lines],
+        "regression_slope": [line.slope for line in lines],
+        "residual_dispersion": [line.dispersion for line in lines],
         "efficiency_ratio": [
-            one.dispersion / one.slope if one.slope > 0.0 else np.inf for one in lines
+            line.dispersion / line.slope if line.slope > 0.0 else np.inf for line in lines
         ],
-        "determination": [one.determination for one in lines],
+        "determination": [line.determination for line in lines],
         "relative_sufficiency": information.mean(axis=1),
         "relative_sufficiency_error": information.std(axis=1, ddof=1) / math.sqrt(count),
-        "line_count": [len(one.residuals) for one in lines],
-        "cloud_overturned_count": [np.isinf(one.responses).sum() for one in clouds],
-        "resting_count": [(one.responses == 0.0).sum() for one in clouds],
+        "line_count": [len(line.residuals) for line in lines],
+        "cloud_overturned_count": [np.isinf(cloud.responses).sum() for cloud in clouds],
+        "resting_count": [(cloud.responses == 0.0).sum() for cloud in clouds],
     }
     if covariates:
         tested = np.array([
@@ -234,11 +239,11 @@ def _comparison_dataset(
     names = {"measure": np.array(list(names_of_measures), dtype=object)}
     if covariates:
         names["covariate"] = np.array(list(covariates), dtype=object)
-    found = build_dataset(
-        {name: np.array(one) for name, one in values.items()}, {}, over=("measure",),
+    dataset = build_dataset(
+        {name: np.array(column) for name, column in values.items()}, {}, over=("measure",),
         title="Comparison of intensity measures", source="least squares and logistic regression",
     )  # fmt: skip
-    return with_variables(found, names)
+    return with_variables(dataset, names)
 
 
 def _residual_trend(cloud: Cloud, covariate: Array) -> tuple[float, float]:
@@ -249,18 +254,18 @@ def _residual_trend(cloud: Cloud, covariate: Array) -> tuple[float, float]:
     known = np.isfinite(values)
     if cloud.regression is None or known.sum() < 3 or np.ptp(values[known]) == 0.0:
         return math.nan, math.nan
-    found: Any = linregress(values[known], cloud.regression.residuals[known])
-    return float(found.slope), float(found.pvalue)
+    trend: Any = linregress(values[known], cloud.regression.residuals[known])
+    return float(trend.slope), float(trend.pvalue)
 
 
-def _sentence(found: xr.Dataset) -> str:
+def _sentence(dataset: xr.Dataset) -> str:
     """Return the verdict in words: the most efficient measure, and those not sufficient."""
-    ratio = found["efficiency_ratio"]
-    best = str(found["measure"][int(np.argmin(ratio.to_numpy()))].item())
-    text = f"Of {found.sizes['measure']} measures {best} is the most efficient, with "
+    ratio = dataset["efficiency_ratio"]
+    best = str(dataset["measure"][int(np.argmin(ratio.to_numpy()))].item())
+    text = f"Of {dataset.sizes['measure']} measures {best} is the most efficient, with "
     text += f"{float(ratio.min()):.3g} of dispersion over power"
-    if "sufficiency_p_value" in found:
-        p_value = found["sufficiency_p_value"]
+    if "sufficiency_p_value" in dataset:
+        p_value = dataset["sufficiency_p_value"]
         dependent = [
             f"{p_value['measure'][k].item()} with {p_value['covariate'][j].item()}"
             for k, j in np.argwhere(p_value.to_numpy() < _SIGNIFICANCE)

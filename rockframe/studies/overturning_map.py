@@ -115,7 +115,9 @@ def overturning_map(
         impacts, owner=_OWNER, name="impacts", lowest=1, highest=_MAX_IMPACTS
     )
     width = read_width(bracket_width, owner=_OWNER)
-    motions = {f"{one!r} {FREQUENCY.unit}": _unit_pulse(pulse, one) for one in frequencies.tolist()}
+    motions = {
+        f"{value!r} {FREQUENCY.unit}": _unit_pulse(pulse, value) for value in frequencies.tolist()
+    }
 
     def modes(runs: xr.Dataset) -> xr.DataArray:
         verdict = overturns(runs)
@@ -127,7 +129,7 @@ def overturning_map(
     )
     result = lines.run_scan(amplitudes, width=width)
     counted = modes(result.scan)
-    found = with_variables(
+    dataset = with_variables(
         result.scan,
         {"impacts_before_overturning": _nan_if_standing(counted.to_numpy())},
         over=tuple(map(str, counted.dims)),
@@ -140,16 +142,16 @@ def overturning_map(
         "impacts_below": _nan_if_standing(before),
         "impacts_above": _nan_if_standing(after),
     }
-    found = with_variables(found, of_frequencies, over=(MOTION,))
-    found = with_labels(found, _labels(system, amplitudes, frequencies, motions.values()))
-    found = found.swap_dims({SCALE: "amplitude", MOTION: "frequency"})
-    found.attrs |= {
+    dataset = with_variables(dataset, of_frequencies, over=(MOTION,))
+    dataset = with_labels(dataset, _labels(system, amplitudes, frequencies, motions.values()))
+    dataset = dataset.swap_dims({SCALE: "amplitude", MOTION: "frequency"})
+    dataset.attrs |= {
         "title": "Overturning by pulses",
         "source": SCAN_SOURCE,
         "bracket_width": width,
         "impacts_told_apart": impact_count,
     }
-    return found
+    return dataset
 
 
 def _unit_pulse(pulse: object, frequency: float) -> GroundMotion:
@@ -198,9 +200,9 @@ def _labels(
         block_frequency = setting.body.frequency_at(system.options.gravity)
         rows.append(("relative_pulse_frequency", MOTION, angular / block_frequency))
         # of amplitude one, which need not be the peak, as in less than a quarter of a sine
-        peaks = np.array([absolute_peak(one.si.horizontal.pieces) for one in pulses])
+        peaks = np.array([absolute_peak(pulse.si.horizontal.pieces) for pulse in pulses])
         if np.ptp(peaks) <= _PEAK_TOLERANCE * peaks.max():
             rows.append(("relative_peak_ground_acceleration", SCALE, levels * peaks[0] / uplift))
-    found = {name: (dim, values, SCHEMA[name].attributes()) for name, dim, values in rows}
-    found["frequency"][2]["long_name"] = "cyclic frequency of the pulse"
-    return found
+    labels = {name: (dim, values, SCHEMA[name].attributes()) for name, dim, values in rows}
+    labels["frequency"][2]["long_name"] = "cyclic frequency of the pulse"
+    return labels

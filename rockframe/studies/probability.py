@@ -66,16 +66,16 @@ def read_spread(value: object, scene: SweptScene, *, owner: str) -> tuple[Random
             f"{short_repr(value)}"
         )
         raise ComponentError(msg)
-    found: list[RandomParameter] = []
+    parameters: list[RandomParameter] = []
     faults: list[str] = []
-    for name, one in cast("Mapping[Any, Any]", value).items():
+    for name, distribution in cast("Mapping[Any, Any]", value).items():
         try:
-            found.append(_read_parameter(str(name), one, scene, owner))
+            parameters.append(_read_parameter(str(name), distribution, scene, owner))
         except RockframeError as problem:
             faults.append(str(problem))
     if faults:
         raise StudyError(*faults)
-    return tuple(found)
+    return tuple(parameters)
 
 
 def read_correlation(argument: object, names: Sequence[str], *, owner: str) -> Array | None:
@@ -87,14 +87,14 @@ def read_correlation(argument: object, names: Sequence[str], *, owner: str) -> A
         matrix = np.eye(size)
         for pair, value in cast("Mapping[Any, Any]", argument).items():
             two = pair if isinstance(pair, tuple) else (pair,)
-            two = tuple(one if one in names else full_name(one) for one in two)
+            two = tuple(name if name in names else full_name(name) for name in two)
             if len(two) != 2 or two[0] == two[1] or not set(two) <= set(names):
                 msg = (
                     f"{owner}: correlation needs pairs of two of {', '.join(names)}, "
                     f"got {short_repr(pair)}"
                 )
                 raise ComponentError(msg)
-            i, j = (names.index(one) for one in two)
+            i, j = (names.index(name) for name in two)
             matrix[i, j] = matrix[j, i] = to_ratio(
                 value, owner=owner, name="correlation", condition=_CORRELATION, example="0.5"
             )
@@ -183,8 +183,8 @@ def _read_frozen(name: str, parts: list[Any], scene: SweptScene, owner: str) -> 
     if unit:
         measure = Measure("a value", Unit(str(axis.unit)), f"1 {unit}")
         if read_number(f"1 {unit}", measure, owner=owner, name=name) != 1.0:
-            wanted = "of pure ratios" if axis.unit == Unit.ONE else f"in {axis.unit}"
-            msg = f"{owner}: {name} needs a distribution {wanted}, got one in {unit}"
+            expected = "of pure ratios" if axis.unit == Unit.ONE else f"in {axis.unit}"
+            msg = f"{owner}: {name} needs a distribution {expected}, got one in {unit}"
             raise ComponentError(msg)
     return RandomParameter(axis.name, str(axis.unit), distribution)
 
@@ -223,8 +223,8 @@ def rank_parameters(columns: Mapping[str, AnyArray], verdict: Array) -> dict[str
     dependence (the adjusted ratio, Kelley 1935): a first-order Sobol index from given data, within
     the width of the groups. The distance is that of Hornberger and Spear (1981).
     """
-    found = {name: _sensitivity(values, verdict) for name, values in columns.items()}
-    return dict(sorted(found.items(), key=lambda one: -one[1].first_order))
+    sensitivities = {name: _sensitivity(values, verdict) for name, values in columns.items()}
+    return dict(sorted(sensitivities.items(), key=lambda item: -item[1].first_order))
 
 
 def _sensitivity(values: AnyArray, verdict: Array) -> Sensitivity:
@@ -252,8 +252,8 @@ def _sensitivity(values: AnyArray, verdict: Array) -> Sensitivity:
     )
     index = 1.0 - (1.0 - between) * (count - 1.0) / (count - groups)
     test: Any = chi2_contingency(np.stack([overturned, size - overturned]), correction=False)
-    both: Any = ks_2samp(values[verdict == 1.0], values[verdict == 0.0]) if numbers else None
-    distance = np.nan if both is None else float(both.statistic)
+    difference: Any = ks_2samp(values[verdict == 1.0], values[verdict == 0.0]) if numbers else None
+    distance = np.nan if difference is None else float(difference.statistic)
     return Sensitivity(max(index, 0.0), distance, float(test.pvalue))
 
 
@@ -346,7 +346,7 @@ def probability_of_overturning(
     """
     scene = scene_of(system)
     spreads = read_spread(spread, scene, owner=_OWNER)
-    matrix = read_correlation(correlation, [one.name for one in spreads], owner=_OWNER)
+    matrix = read_correlation(correlation, [parameter.name for parameter in spreads], owner=_OWNER)
     count = checked_integer(cases, owner=_OWNER, name="cases", lowest=2, highest=_MAX_CASES)
     method = checked_choice(Sampling, sampling, owner=_OWNER, name="sampling")
     start_seed = checked_integer(seed, owner=_OWNER, name="seed", lowest=0)
@@ -366,14 +366,16 @@ def probability_of_overturning(
     order = np.argsort(number, kind="stable")
     cube, number = cube[order], number[order]
     table: dict[str, Any] = {
-        head(one.name, one.unit): one.distribution.ppf(column)
-        for one, column in zip(spreads, cube.T[1:], strict=True)
+        head(parameter.name, parameter.unit): parameter.distribution.ppf(column)
+        for parameter, column in zip(spreads, cube.T[1:], strict=True)
     }
     if named is not None:
         table[MOTION] = np.array(list(named), dtype=object)[number]
     runs = sweep(system, named, cases=table, **run)
-    found = _with_probability(runs, [one.name for one in spreads], several=several > 1, level=level)
-    return found.assign_attrs(
+    dataset = _with_probability(
+        runs, [parameter.name for parameter in spreads], several=several > 1, level=level
+    )
+    return dataset.assign_attrs(
         title="Probability of overturning",
         seed=start_seed,
         confidence=level,
@@ -400,9 +402,15 @@ def _with_probability(
         "overturning_probability_upper_bound": upper,
         "verdict_count": count,
         "parameter": np.array(list(sensitivities), dtype=object),
-        "first_order_index": np.array([one.first_order for one in sensitivities.values()]),
-        "verdict_distance": np.array([one.distribution_distance for one in sensitivities.values()]),
-        "chance_probability": np.array([one.p_value for one in sensitivities.values()]),
+        "first_order_index": np.array(
+            [sensitivity.first_order for sensitivity in sensitivities.values()]
+        ),
+        "verdict_distance": np.array(
+            [sensitivity.distribution_distance for sensitivity in sensitivities.values()]
+        ),
+        "chance_probability": np.array(
+            [sensitivity.p_value for sensitivity in sensitivities.values()]
+        ),
     }
     strongest = next(iter(sensitivities), "")
     text = f"Overturns with probability {share:.3g}, from {float(lower):.3g} to {float(upper):.3g}"

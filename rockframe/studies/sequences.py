@@ -93,16 +93,16 @@ def earthquake_sequences(
     pause_time = to_si(pause, TIME, owner=_OWNER, name="pause", condition=NOT_NEGATIVE)
     named = _read_sequences(sequences)
     joined = {
-        name: list(accumulate(each, lambda first, second: _join(first, second, pause_time)))
-        for name, each in named.items()
+        name: list(accumulate(sequence, lambda first, second: _join(first, second, pause_time)))
+        for name, sequence in named.items()
     }
-    longest = max(len(each) for each in joined.values())
+    longest = max(len(sequence) for sequence in joined.values())
     motions = {
         f"{name}, {number}": _join(motion, None, pause_time)
-        for name, each in joined.items()
-        for number, motion in enumerate(each, start=1)
+        for name, sequence in joined.items()
+        for number, motion in enumerate(sequence, start=1)
     }
-    exists = np.arange(longest) < np.array([[len(each)] for each in joined.values()])
+    exists = np.arange(longest) < np.array([[len(sequence)] for sequence in joined.values()])
     arranged = _unstack_sequences(sweep(system, motions, **run), exists)
     overturned = overturns(arranged).transpose("sequence", EARTHQUAKE).to_numpy() == 1.0
     labels = {
@@ -111,12 +111,12 @@ def earthquake_sequences(
         "overturning_earthquake": np.where(
             overturned.any(axis=1), overturned.argmax(axis=1) + 1, 0
         ),
-        "pause": np.array([_actual_pause(each[0], pause_time) for each in named.values()]),
+        "pause": np.array([_actual_pause(sequence[0], pause_time) for sequence in named.values()]),
     }
-    found = with_variables(arranged, labels)
+    dataset = with_variables(arranged, labels)
     of_all = "1 sequence" if len(joined) == 1 else f"all {len(joined)} sequences"
     verdict = f"Of {of_all} {int(overturned.any(axis=1).sum())} overturned."
-    return found.assign_attrs(title="Earthquakes in sequence", verdict=verdict)
+    return dataset.assign_attrs(title="Earthquakes in sequence", verdict=verdict)
 
 
 def _read_sequences(value: object) -> dict[str, list[GroundMotion]]:
@@ -125,37 +125,39 @@ def _read_sequences(value: object) -> dict[str, list[GroundMotion]]:
         named = with_string_keys(cast("Mapping[Any, Any]", value), owner=_OWNER)
     elif is_iterable(value) and not isinstance(value, str):
         listed = list(value)
-        if len(listed) > 1 and all(isinstance(one, GroundMotion) for one in listed):
+        if len(listed) > 1 and all(isinstance(motion, GroundMotion) for motion in listed):
             msg = (
                 f"{_OWNER}: found {len(listed)} motions in a row; expected a row of sequences: put "
                 "brackets around the motions that follow one another, [[main, aftershock]]"
             )
             raise ComponentError(msg)
-        named = {f"sequence {number}": each for number, each in enumerate(listed, start=1)}
+        named = {f"sequence {number}": sequence for number, sequence in enumerate(listed, start=1)}
     else:
         named = {}
-    found: dict[str, list[GroundMotion]] = {}
-    for name, each in named.items():
-        motions = [each] if isinstance(each, GroundMotion) else checked_list(
-            each, owner=_OWNER, name=repr(name), of="GroundMotions"
+    sequences: dict[str, list[GroundMotion]] = {}
+    for name, sequence in named.items():
+        motions = [sequence] if isinstance(sequence, GroundMotion) else checked_list(
+            sequence, owner=_OWNER, name=repr(name), of="GroundMotions"
         )  # fmt: skip
-        if not motions or not all(isinstance(one, GroundMotion) for one in motions):
-            msg = f"{_OWNER}: {name!r} needs GroundMotions in their order, got {short_repr(each)}"
+        if not motions or not all(isinstance(motion, GroundMotion) for motion in motions):
+            msg = (
+                f"{_OWNER}: {name!r} needs GroundMotions in their order, got {short_repr(sequence)}"
+            )
             raise ComponentError(msg)
-        found[name] = motions
-    if not found:
+        sequences[name] = motions
+    if not sequences:
         msg = f"{_OWNER}: found {short_repr(value)}; expected sequences of GroundMotions"
         raise ComponentError(msg)
-    return {name: _with_common_step(each) for name, each in found.items()}
+    return {name: _with_common_step(motions) for name, motions in sequences.items()}
 
 
 def _with_common_step(motions: list[GroundMotion]) -> list[GroundMotion]:
     """Divide the intervals of motions, so that all have one time step; each stays as it is."""
-    steps = [one.si.time_step for one in motions]
+    steps = [motion.si.time_step for motion in motions]
     least = min(steps)
     ratios = [Fraction(step / least).limit_denominator(_MAX_SUBDIVISIONS) for step in steps]
-    common = math.lcm(*(one.denominator for one in ratios))  # parts of the least step
-    parts = [int(one * common) for one in ratios]
+    common = math.lcm(*(ratio.denominator for ratio in ratios))  # parts of the least step
+    parts = [int(ratio * common) for ratio in ratios]
     fits = [
         math.isclose(step, count * least / common, rel_tol=_STEP_TOLERANCE)
         for step, count in zip(steps, parts, strict=True)
@@ -167,8 +169,8 @@ def _with_common_step(motions: list[GroundMotion]) -> list[GroundMotion]:
         )
         raise ComponentError(msg)
     return [
-        one if count == 1 else divide_intervals(one, count)
-        for one, count in zip(motions, parts, strict=True)
+        motion if count == 1 else divide_intervals(motion, count)
+        for motion, count in zip(motions, parts, strict=True)
     ]
 
 
@@ -177,14 +179,17 @@ def _join(first: GroundMotion, second: GroundMotion | None, pause_time: float) -
     if second is None and pause_time == 0.0:
         return first
     still = _pause_steps(first, pause_time)
-    both = [one for one in (first, second) if one is not None]
-    horizontal = _concatenate([one.si.horizontal for one in both], still)
+    motions = [motion for motion in (first, second) if motion is not None]
+    horizontal = _concatenate([motion.si.horizontal for motion in motions], still)
     vertical = None
-    if any(one.si.vertical is not None for one in both):
+    if any(motion.si.vertical is not None for motion in motions):
         vertical = _concatenate(
-            [one.si.vertical or _zero_vertical(one.si.horizontal) for one in both], still
+            [motion.si.vertical or _zero_vertical(motion.si.horizontal) for motion in motions],
+            still,
         )
-    return GroundMotion(Motion(horizontal, vertical), name=", then ".join(one.name for one in both))
+    return GroundMotion(
+        Motion(horizontal, vertical), name=", then ".join(motion.name for motion in motions)
+    )
 
 
 def _pause_steps(motion: GroundMotion, pause_time: float) -> int:
@@ -194,8 +199,8 @@ def _pause_steps(motion: GroundMotion, pause_time: float) -> int:
 
 def _actual_pause(motion: GroundMotion, pause_time: float) -> float:
     """Return the pause in a sequence; exactly the given one where it is whole time steps."""
-    found = _pause_steps(motion, pause_time) * motion.si.time_step
-    return pause_time if math.isclose(found, pause_time, rel_tol=_STEP_TOLERANCE) else found
+    pause = _pause_steps(motion, pause_time) * motion.si.time_step
+    return pause_time if math.isclose(pause, pause_time, rel_tol=_STEP_TOLERANCE) else pause
 
 
 def _zero_vertical(horizontal: Signal) -> Signal:
@@ -206,10 +211,10 @@ def _zero_vertical(horizontal: Signal) -> Signal:
 
 def _concatenate(signals: Sequence[Signal], still: int) -> Signal:
     """Put intervals of still ground after a signal, and then another one, if there is one."""
-    first, *others = signals
-    samples = [first.samples, np.zeros(still - len(others)), *(one.samples for one in others)]
+    first, *later = signals
+    samples = [first.samples, np.zeros(still - len(later)), *(signal.samples for signal in later)]
     pieces = [_padded(first.pieces), np.zeros((still, COEFFICIENTS))]
-    pieces += [_padded(one.pieces) for one in others]
+    pieces += [_padded(signal.pieces) for signal in later]
     return Signal(first.time_step, np.concatenate(samples), np.concatenate(pieces), first.name)
 
 
@@ -219,19 +224,21 @@ def _padded(pieces: Array) -> Array:
 
 def _unstack_sequences(runs: xr.Dataset, exists: AnyArray) -> xr.Dataset:
     """Return the runs with dimensions of sequence and earthquake instead of motion."""
-    found: dict[str, xr.Variable] = {}
+    variables: dict[str, xr.Variable] = {}
     gaps = not exists.all()
-    for name, one in runs.data_vars.items():
-        if one.dims != (MOTION,):
+    for name, variable in runs.data_vars.items():
+        if variable.dims != (MOTION,):
             continue
-        values = np.full(exists.shape, np.nan) if gaps else np.empty(exists.shape, dtype=one.dtype)
-        values[exists] = one.to_numpy()
-        attributes = dict(one.attrs)
+        values = (
+            np.full(exists.shape, np.nan) if gaps else np.empty(exists.shape, dtype=variable.dtype)
+        )
+        values[exists] = variable.to_numpy()
+        attributes = dict(variable.attrs)
         if gaps and "flag_values" in attributes:
             attributes["flag_values"] = attributes["flag_values"].astype(np.float64)
-        found[str(name)] = xr.Variable(("sequence", EARTHQUAKE), values, attributes)
+        variables[str(name)] = xr.Variable(("sequence", EARTHQUAKE), values, attributes)
     words = np.full(exists.shape, NONE, dtype=object)
     words[exists] = runs[MESSAGE].to_numpy()
     texts = xr.Variable(("sequence", EARTHQUAKE), words, runs[MESSAGE].attrs)
-    attributes = {name: one for name, one in runs.attrs.items() if name != CASE_COUNT}
-    return xr.Dataset(found, coords={MESSAGE: texts}, attrs=attributes)
+    attributes = {name: value for name, value in runs.attrs.items() if name != CASE_COUNT}
+    return xr.Dataset(variables, coords={MESSAGE: texts}, attrs=attributes)

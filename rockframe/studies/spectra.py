@@ -79,7 +79,7 @@ class BlockSizes:
             f"Block.{name}" if name in shared else name: (values, str(LENGTH.unit))
             for name, values in (("width", width), ("height", height))
         }
-        own_axes = [scene.axis(name, each) for name, each in sizes.items()]
+        own_axes = [scene.axis(name, values) for name, values in sizes.items()]
         other_axes = read_line_axes(
             axes, scene, owner=owner, argument_names=arguments, own_axes=own_axes
         )
@@ -117,9 +117,9 @@ def _with_shape_factor(system: System, owner: str) -> System:
         return system
     with collected_warnings():  # block and system already gave their warnings when they were made
         scaling = block.replace(shape_factor=block.shape_factor, centre_height=None)
-        others = [part for part in system.parts.structural() if part is not block]
+        other_parts = [part for part in system.parts.structural() if part is not block]
         options: dict[str, Any] = system.options.to_dict()
-        return System(scaling, *others, **options)
+        return System(scaling, *other_parts, **options)
 
 
 _ROCKING: Final = "rocking_spectrum"
@@ -286,9 +286,9 @@ def overturning_spectrum(
         "left_out_count": np.isnan(verdicts).sum(axis=-1),
         **flips,
     }
-    found = with_variables(scan.drop_dims(SCALE), values, over=(CASE, MOTION))
-    found["capacity_intensity"].attrs["units"] = measure.attributes()["units"]
-    return sizes.unstack(found).assign_attrs(
+    dataset = with_variables(scan.drop_dims(SCALE), values, over=(CASE, MOTION))
+    dataset["capacity_intensity"].attrs["units"] = measure.attributes()["units"]
+    return sizes.unstack(dataset).assign_attrs(
         title="Overturning spectrum",
         source=SCAN_SOURCE,
         **measure_attributes(measure.name, measure.period),

@@ -171,7 +171,7 @@ def subset_simulation(
     """
     scene = scene_of(system)
     spreads = read_spread(spread, scene, owner=_OWNER)
-    matrix = read_correlation(correlation, [one.name for one in spreads], owner=_OWNER)
+    matrix = read_correlation(correlation, [parameter.name for parameter in spreads], owner=_OWNER)
     state = _read_limit(limit)
     count = checked_integer(cases, owner=_OWNER, name="cases", lowest=10, highest=_MAX_CASES)
     fraction = to_ratio(share, owner=_OWNER, name="share", condition=_SHARE, example="0.1")
@@ -277,10 +277,10 @@ class _Sampler:
         # each from the probability of its own tail, which loses no digits
         beyond = ndtr(-np.abs(normal))
         table: dict[str, Any] = {
-            head(one.name, one.unit): np.where(
-                score > 0.0, one.distribution.isf(tail), one.distribution.ppf(tail)
+            head(parameter.name, parameter.unit): np.where(
+                score > 0.0, parameter.distribution.isf(tail), parameter.distribution.ppf(tail)
             )
-            for one, score, tail in zip(self._spreads, normal.T, beyond.T, strict=True)
+            for parameter, score, tail in zip(self._spreads, normal.T, beyond.T, strict=True)
         }
         if self._names:
             several = len(self._names)
@@ -292,52 +292,54 @@ class _Sampler:
 
 def _collect_levels(iterator: Iterator[Level], advice: str) -> tuple[list[Level], bool]:
     """Return the levels, and whether sampling was completed."""
-    found: list[Level] = []
+    levels: list[Level] = []
     try:
-        found.extend(iterator)
+        levels.extend(iterator)
     except KeyboardInterrupt:
-        message = f"{_OWNER}: interrupted at level {len(found) + 1}{advice}"
-        if not found:
+        message = f"{_OWNER}: interrupted at level {len(levels) + 1}{advice}"
+        if not levels:
             raise StudyError(message) from None
         warn(message, SolverWarning)
-        return found, False
-    return found, True
+        return levels, False
+    return levels, True
 
 
 def _subset_dataset(
-    sampler: _Sampler, found: Sequence[Level], confidence: float, *, completed: bool
+    sampler: _Sampler, levels: Sequence[Level], confidence: float, *, completed: bool
 ) -> xr.Dataset:
     """Return a dataset of the samples of all levels with their runs, and of the probability."""
     first = sampler.runs[0]
     samples = concat(sampler.runs, CASE).isel(
-        {CASE: np.concatenate([one.origins for one in found])}
+        {CASE: np.concatenate([level.origins for level in levels])}
     )
     samples = samples.assign_coords(
         {CASE: (CASE, np.arange(samples.sizes[CASE]), first[CASE].attrs)}
     )
-    lower, upper = subset_bounds(found, confidence)
+    lower, upper = subset_bounds(levels, confidence)
     of_levels = build_dataset(
         {
-            "sampling_level": np.arange(1, len(found) + 1),
-            "demand_threshold": np.array([one.threshold for one in found]),
-            "conditional_probability": np.array([one.share for one in found]),
-            "acceptance_rate": np.array([one.acceptance for one in found]),
-            "chain_count": np.array([one.chains for one in found]),
-            "exceedance_probability": subset_probability(found) if completed else np.nan,
+            "sampling_level": np.arange(1, len(levels) + 1),
+            "demand_threshold": np.array([level.threshold for level in levels]),
+            "conditional_probability": np.array([level.share for level in levels]),
+            "acceptance_rate": np.array([level.acceptance for level in levels]),
+            "chain_count": np.array([level.chains for level in levels]),
+            "exceedance_probability": subset_probability(levels) if completed else np.nan,
             "exceedance_probability_lower_bound": lower if completed else 0.0,
             "exceedance_probability_upper_bound": upper,
-            "coefficient_of_variation": subset_variation(found) if completed else np.nan,
-            "run_count": sum(one.runs for one in found),
-            "left_out_count": sum(one.left_out for one in found),
-            "family_count": int((family_shares(found) > 0.0).sum()),
+            "coefficient_of_variation": subset_variation(levels) if completed else np.nan,
+            "run_count": sum(level.runs for level in levels),
+            "left_out_count": sum(level.left_out for level in levels),
+            "family_count": int((family_shares(levels) > 0.0).sum()),
         },
         {},
         source="subset simulation by event-driven runs",
     )
     of_samples = {
-        "demand": np.concatenate([one.demands for one in found]),
-        "sample_level": np.repeat(of_levels["sampling_level"], [len(one.demands) for one in found]),
-        "sample_weight": np.concatenate(sample_weights(found)),
+        "demand": np.concatenate([level.demands for level in levels]),
+        "sample_level": np.repeat(
+            of_levels["sampling_level"], [len(level.demands) for level in levels]
+        ),
+        "sample_weight": np.concatenate(sample_weights(levels)),
     }
     attributes = {name: first.attrs[name] for name in _TABLE_ATTRIBUTES}
     samples = samples.assign(of_levels.data_vars).assign_coords(of_levels.coords)
@@ -345,11 +347,11 @@ def _subset_dataset(
     return samples.assign_attrs({**attributes, "source": of_levels.attrs["source"]})
 
 
-def _warn_of_uncertain_probability(found: xr.Dataset) -> None:
+def _warn_of_uncertain_probability(dataset: xr.Dataset) -> None:
     """Warn if the probability has only an upper bound, or is uncertain."""
-    families, levels = int(found["family_count"]), found.sizes["sampling_level"]
+    families, levels = int(dataset["family_count"]), dataset.sizes["sampling_level"]
     if families == 0:
-        last = found["demand"].where(found["sample_level"] == levels, drop=True)
+        last = dataset["demand"].where(dataset["sample_level"] == levels, drop=True)
         least, most = float(last.min()), float(last.max())
         why = f"the greatest demand is {most:.3g}; allow more levels"
         if least == most:
@@ -365,27 +367,27 @@ def _warn_of_uncertain_probability(found: xr.Dataset) -> None:
 
 
 def _sentence(
-    found: xr.Dataset, state: LimitState, confidence: float, motions: int, *, completed: bool
+    dataset: xr.Dataset, state: LimitState, confidence: float, motions: int, *, completed: bool
 ) -> str:
     """Return the verdict in words: the probability, and the number of runs."""
     outcome = "Overturns" if state.rotation == 1.0 else f"Exceeds {state.name}"
     lower, upper = (
-        float(found[f"exceedance_probability_{end}_bound"]) for end in ("lower", "upper")
+        float(dataset[f"exceedance_probability_{end}_bound"]) for end in ("lower", "upper")
     )
-    probability = float(found["exceedance_probability"])
+    probability = float(dataset["exceedance_probability"])
     if probability > 0.0:
         text = (
             f"{outcome} with probability {probability:.2e}, from {lower:.2e} to {upper:.2e} with "
             f"confidence {confidence:g}, coefficient of variation "
-            f"{float(found['coefficient_of_variation']):.2g}"
+            f"{float(dataset['coefficient_of_variation']):.2g}"
         )
     else:
         text = f"{outcome} with a probability below {upper:.2e} with confidence {confidence:g}"
-    levels = found.sizes["sampling_level"]
-    text += f", by {int(found['run_count'])} runs in {levels} level{'s' * (levels > 1)}"
+    levels = dataset.sizes["sampling_level"]
+    text += f", by {int(dataset['run_count'])} runs in {levels} level{'s' * (levels > 1)}"
     if motions > 1:
         text += f" under these {motions} motions"
-    missing = int(found["left_out_count"])
+    missing = int(dataset["left_out_count"])
     if missing:
         text += f"; {missing} without a verdict are left out"
     return f"{text}." if completed else f"{text}{INTERRUPTED_ENDING}"

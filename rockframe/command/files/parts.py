@@ -68,12 +68,12 @@ def _build_each(
 ) -> list[Component | None]:
     """Build the part of a table, or those of several; parts with faults are None."""
     items: list[Any] = value if several else [value]
-    found: list[Component | None] = []
+    parts: list[Component | None] = []
     for number, item in enumerate(items):
         place = (*where, number) if several else where
         table = file.table(place, item)
-        found.append(None if table is None else _build_part(file, place, known, table))
-    return found
+        parts.append(None if table is None else _build_part(file, place, known, table))
+    return parts
 
 
 def inner_parts(kind: type[Component]) -> Mapping[str, InnerParts]:
@@ -111,14 +111,14 @@ def _build_part(
         if name in table and not _build_inner(file, (*where, name), inner[name], table)
     ]  # fmt: skip
     unknown = [name for name in table if name not in known_keys]
-    declared = {name: one for name, one in declared.items() if name not in inner}
+    declared = {name: field for name, field in declared.items() if name not in inner}
     if not check_table(file, where, table, known_keys, declared, hints_of(kind.__init__)):
         _note_constructors(file, where, kind, unknown)
         return None
     if faulty:
         return None
     bodies = table.pop(_BODIES, ()) if _BODIES in inner else ()
-    return call_with_table(file, where, lambda **rest: function(*bodies, **rest), table)
+    return call_with_table(file, where, lambda **values: function(*bodies, **values), table)
 
 
 def _build_inner(file: TomlFile, where: KeyPath, inner: InnerParts, table: dict[str, Any]) -> bool:
@@ -148,8 +148,8 @@ def classes_in(slot: str) -> dict[str, type[Component]]:
 def constructors(kind: type[Component]) -> dict[str, Callable[..., Component]]:
     """Return the named constructors of a component, besides its class itself."""
     return {
-        name: one
-        for name, one in getmembers(kind, ismethod)
+        name: method
+        for name, method in getmembers(kind, ismethod)
         if not name.startswith("_") and name not in _COMMON_METHODS
     }
 
@@ -175,7 +175,11 @@ def _note_constructors(
 ) -> None:
     """Note which other constructors take the keys that this one does not know."""
     for name in unknown:
-        ways = [way for way, one in constructors(kind).items() if name in arguments_of(one)]
+        ways = [
+            way
+            for way, constructor in constructors(kind).items()
+            if name in arguments_of(constructor)
+        ]
         if ways:
             file.add_fault(
                 (*where, name),
@@ -196,9 +200,9 @@ def toml_tables(parts: Iterable[Component]) -> list[tuple[str, list[str]]]:
 
     One below the other they are a file of the same parts.
     """
-    found = [*parts]
-    several = sum(slot_of_class(type(part)) == RESTRAINER for part in found) > 1
-    return [row for part in found for row in _part_tables(part, several=several)]
+    listed = [*parts]
+    several = sum(slot_of_class(type(part)) == RESTRAINER for part in listed) > 1
+    return [row for part in listed for row in _part_tables(part, several=several)]
 
 
 def _part_tables(part: Component, *, several: bool) -> Iterator[tuple[str, list[str]]]:
@@ -206,33 +210,33 @@ def _part_tables(part: Component, *, several: bool) -> Iterator[tuple[str, list[
     slot, inner = slot_of_class(type(part)) or type(part).__name__, inner_parts(type(part))
     values: dict[str, Any] = dict(part.to_dict())
     head = f"[[{slot}]]" if several and slot == RESTRAINER else f"[{slot}]"
-    own = {name: value for name, value in values.items() if name not in inner}
-    yield head, _key_lines(own, slot)
-    for name, one in inner.items():
+    plain = {name: value for name, value in values.items() if name not in inner}
+    yield head, _key_lines(plain, slot)
+    for name, form in inner.items():
         title = f"{slot}.{name}"
         held = values[name]
-        for each in held if one.several else [held]:
-            yield f"[[{title}]]" if one.several else f"[{title}]", _key_lines(each, one.slots[0])
+        for item in held if form.several else [held]:
+            yield f"[[{title}]]" if form.several else f"[{title}]", _key_lines(item, form.slots[0])
 
 
 def _key_lines(values: Mapping[str, Any], slot: str) -> list[str]:
     """Write the keys of a table with their values; the class only where it is not the usual one."""
-    rest = dict(values)
-    kind = str(rest.pop(TYPE))
+    remaining = dict(values)
+    kind = str(remaining.pop(TYPE))
     keys: dict[str, Any] = {} if kind == default_class(slot).__name__ else {TYPE: kind}
     part = registered_classes()[kind]
-    if _FROM_MEMBERS in constructors(part) and not rest.keys() <= part.declared().keys():
+    if _FROM_MEMBERS in constructors(part) and not remaining.keys() <= part.declared().keys():
         keys[CONSTRUCTOR] = _FROM_MEMBERS  # the only one whose arguments a part keeps
-    if _MEMBERS in rest:
-        rest[_MEMBERS] = json.loads(rest[_MEMBERS])
-    keys |= rest
+    if _MEMBERS in remaining:
+        remaining[_MEMBERS] = json.loads(remaining[_MEMBERS])
+    keys |= remaining
     return [f"{name} = {toml_value(value)}" for name, value in keys.items()]
 
 
 def toml_value(value: Any) -> str:
     """Write a value; a point in brackets."""
     if isinstance(value, Mapping):
-        inner = ", ".join(f"{name} = {toml_value(one)}" for name, one in value.items())
+        inner = ", ".join(f"{name} = {toml_value(item)}" for name, item in value.items())
         return f"{{ {inner} }}"
     if isinstance(value, list | tuple):
         return f"[{', '.join(map(toml_value, value))}]"

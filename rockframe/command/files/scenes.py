@@ -75,7 +75,10 @@ def _read_record(file: TomlFile, where: KeyPath, table: dict[str, Any]) -> Groun
     if isinstance(table.get(_RESPONSE), str):
         table[_RESPONSE] = file.path_relative_to(table[_RESPONSE])
     return call_with_table(
-        file, where, lambda **rest: GroundMotion.read(file.path_relative_to(name), **rest), table
+        file,
+        where,
+        lambda **values: GroundMotion.read(file.path_relative_to(name), **values),
+        table,
     )
 
 
@@ -102,18 +105,18 @@ def _apply_operations(
         words = "operations must be a list such as [{ scaled = { factor = 1.5 } }]"
         file.add_fault(where, f"{words}, got {short_repr(operations)}")
         return None
-    found: GroundMotion | None = motion
-    for number, one in enumerate(operations):
+    processed: GroundMotion | None = motion
+    for number, operation in enumerate(operations):
         here = (*where, number)
-        if not isinstance(one, dict) or len(one) != 1:
+        if not isinstance(operation, dict) or len(operation) != 1:
             words = "an operation is written { scaled = { factor = 1.5 } }"
-            file.add_fault(here, f"{words}, got {short_repr(one)}")
+            file.add_fault(here, f"{words}, got {short_repr(operation)}")
             return None
-        ((name, value),) = one.items()
-        if found is None:
+        ((name, value),) = operation.items()
+        if processed is None:
             return None
-        found = _apply_operation(file, (*here, str(name)), found, value)
-    return found
+        processed = _apply_operation(file, (*here, str(name)), processed, value)
+    return processed
 
 
 def _apply_operation(
@@ -166,10 +169,10 @@ def read_scene(path: str | Path) -> SceneDescription:
     for name in file.values:
         if name not in scene_keys():
             _add_unknown_table(file, name)
-    found = build_scene(file)
-    if found is None or not file.is_valid:
+    scene = build_scene(file)
+    if scene is None or not file.is_valid:
         raise file.error()
-    return found
+    return scene
 
 
 def build_scene(file: TomlFile) -> SceneDescription | None:
@@ -189,7 +192,7 @@ def build_scene(file: TomlFile) -> SceneDescription | None:
         return None
     if not file.is_valid:
         return None
-    system = call_with_table(file, (OPTIONS,), lambda **rest: System(*parts, **rest), options)
+    system = call_with_table(file, (OPTIONS,), lambda **values: System(*parts, **values), options)
     return (
         None
         if system is None
@@ -204,19 +207,19 @@ def run_keys() -> dict[str, bool]:
 
 def build_run_objects(file: TomlFile, where: KeyPath, table: dict[str, Any]) -> dict[str, Any]:
     """Build the objects that inner tables of the table of a run describe."""
-    found = dict(table)
+    objects = dict(table)
     for name, kind in _RUN_CLASSES.items():
-        inner = found.get(name)
+        inner = objects.get(name)
         if not isinstance(inner, dict):
             continue
         here = (*where, name)
         value = file.table(here, inner) or {}
         declared = kind.declared() if issubclass(kind, Component) else {}
         if check_table(file, here, value, arguments_of(kind), declared):
-            found[name] = call_with_table(file, here, kind, value)
-        if not isinstance(found[name], kind):  # its fault has been noted
-            del found[name]
-    return found
+            objects[name] = call_with_table(file, here, kind, value)
+        if not isinstance(objects[name], kind):  # its fault has been noted
+            del objects[name]
+    return objects
 
 
 _RUN_CLASSES: Final[Mapping[str, type]] = {
@@ -250,8 +253,8 @@ def project_from_table(file: TomlFile, value: object) -> str:
 def _read_project(**values: Any) -> str:
     """Read a project and its checks by codes, before there is a result."""
     text = project_json(values, PROJECT)
-    for one in values.get(CHECKS, ()):
-        parse_check(str(one), CHECKS)
+    for check in values.get(CHECKS, ()):
+        parse_check(str(check), CHECKS)
     return text
 
 
@@ -267,7 +270,7 @@ def _read_arguments(**values: Any) -> None:
 def _add_unknown_table(file: TomlFile, name: str) -> None:
     letters = name.replace("_", "").casefold()
     kind = next(
-        (kind for one, kind in registered_classes().items() if one.casefold() == letters), None
+        (kind for word, kind in registered_classes().items() if word.casefold() == letters), None
     )
     slot = None if kind is None else slot_of_class(kind)
     if kind is None or slot is None:
@@ -302,9 +305,9 @@ def _import_module(file: TomlFile, name: str) -> None:
     path = file.path_relative_to(name)
     stem = path.stem
     if stem in sys.modules:
-        found = getattr(sys.modules[stem], "__file__", None)
-        if found is None or path.read_bytes() != Path(found).read_bytes():
-            msg = f"{stem} is another module already, {found or 'a built-in one'}: rename the file"
+        loaded = getattr(sys.modules[stem], "__file__", None)
+        if loaded is None or path.read_bytes() != Path(loaded).read_bytes():
+            msg = f"{stem} is another module already, {loaded or 'a built-in one'}: rename the file"
             raise ImportError(msg)
         return
     spec = spec_from_file_location(stem, path)

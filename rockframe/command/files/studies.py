@@ -134,8 +134,8 @@ def _read_motions(file: TomlFile) -> Motions:
     where = (MOTIONS,)
     items: list[Any] = value if isinstance(value, list) else [value]
     if items and all(isinstance(item, dict) for item in items):
-        found = [build_motion(file, (MOTIONS, number), item) for number, item in enumerate(items)]
-        return [one for one in found if one is not None]
+        motions = [build_motion(file, (MOTIONS, number), item) for number, item in enumerate(items)]
+        return [motion for motion in motions if motion is not None]
     if not items or not all(isinstance(item, str) for item in items):
         words = 'motions must be a list of files, folders or patterns such as ["records/*.AT2"]'
         file.add_fault(where, f"{words}, or of tables [[motions]]; got {short_repr(value)}")
@@ -155,17 +155,17 @@ def _read_motions(file: TomlFile) -> Motions:
 
 
 def _read_axes(file: TomlFile) -> dict[str, Any]:
-    found: dict[str, Any] = {}
+    arguments: dict[str, Any] = {}
     if AXES in file.values:
         axes = file.table((AXES,), file.values[AXES]) or {}
-        found[AXES] = {name: _read_axis(file, name, given) for name, given in axes.items()}
+        arguments[AXES] = {name: _read_axis(file, name, given) for name, given in axes.items()}
     if CASES in file.values:
         name = file.values[CASES]
         try:
-            found[CASES] = read_columns(file.path_relative_to(str(name)))
+            arguments[CASES] = read_columns(file.path_relative_to(str(name)))
         except (OSError, ValueError) as problem:
             file.add_fault((CASES,), f"{name}: the table cannot be read ({problem})")
-    return found
+    return arguments
 
 
 def _read_axis(file: TomlFile, name: str, value: object) -> Any:
@@ -200,7 +200,9 @@ def _resolve_stores(file: TomlFile, table: dict[str, Any]) -> dict[str, Any]:
         return table
     value = table[KNOWN]
     paths = value if isinstance(value, list) else [value]
-    return table | {KNOWN: [file.path_of(one) if isinstance(one, str) else one for one in paths]}
+    return table | {
+        KNOWN: [file.path_of(path) if isinstance(path, str) else path for path in paths]
+    }
 
 
 def _read_path(file: TomlFile, name: str) -> Path | None:

@@ -47,7 +47,7 @@ _TOKEN: Final = re.compile(
 
 def lines_of(text: str) -> dict[KeyPath, int]:
     """Return the lines of tables and keys."""
-    found: dict[KeyPath, int] = {}
+    lines: dict[KeyPath, int] = {}
     arrays: dict[KeyPath, int] = {}
     table: KeyPath = ()
     for line, statement in _statements(text):
@@ -56,16 +56,16 @@ def lines_of(text: str) -> dict[KeyPath, int]:
             table = _with_array_numbers(names[:-1], arrays) + names[-1:]
             if several:
                 arrays[table] = arrays.get(table, -1) + 1
-                found.setdefault(table, line)
+                lines.setdefault(table, line)
                 table = (*table, arrays[table])
-            found[table] = line
+            lines[table] = line
         else:
             pieces = (match[0] for match in _TOKEN.finditer(statement))
             key = "".join(takewhile(lambda piece: piece != "=", pieces))
             names = _nested_keys(tomllib.loads(f"{key} = 0"))
             for depth in range(1, len(names) + 1):
-                found.setdefault(table + names[:depth], line)
-    return found
+                lines.setdefault(table + names[:depth], line)
+    return lines
 
 
 def _statements(text: str) -> Iterator[tuple[int, str]]:
@@ -135,8 +135,8 @@ class TomlFile:
         try:
             values = tomllib.loads(text)
         except tomllib.TOMLDecodeError as problem:
-            found = _TOML_POSITION.search(str(problem))
-            line = int(found[1]) if found else None
+            match = _TOML_POSITION.search(str(problem))
+            line = int(match[1]) if match else None
             words = f"this is no TOML: {_TOML_POSITION.sub('', str(problem))}"
             hint = '; write text in quotation marks, as in width = "1 m"'
             raise FileError(str(place), [(line, words + hint)]) from problem
@@ -228,12 +228,12 @@ def _decoded_text(name: str, data: bytes) -> str:
 def read_columns(path: str | Path) -> pd.DataFrame:
     """Read a table in CSV whose rows have as many values as heads; OSError, ValueError."""
     # motions stay text, since the names 01 and 1 differ
-    found = pd.read_csv(path, comment="#", skipinitialspace=True, dtype={MOTION: str})
-    if not isinstance(found.index, pd.RangeIndex):  # pandas takes superfluous values as labels
-        count = len(found.columns)
-        msg = f"its rows have {count + found.index.nlevels} values, but there are {count} heads"
+    table = pd.read_csv(path, comment="#", skipinitialspace=True, dtype={MOTION: str})
+    if not isinstance(table.index, pd.RangeIndex):  # pandas takes superfluous values as labels
+        count = len(table.columns)
+        msg = f"its rows have {count + table.index.nlevels} values, but there are {count} heads"
         raise ValueError(msg)
-    return found
+    return table
 
 
 def table_title(where: KeyPath) -> str:
@@ -248,9 +248,9 @@ def arguments_of(function: Callable[..., Any], *, without: tuple[str, ...] = ())
     """Return the arguments that a function takes by name, and whether each must be given."""
     named = (Parameter.POSITIONAL_OR_KEYWORD, Parameter.KEYWORD_ONLY)
     return {
-        name: one.default is Parameter.empty
-        for name, one in signature(function).parameters.items()
-        if one.kind in named and name not in ("self", *without)
+        name: parameter.default is Parameter.empty
+        for name, parameter in signature(function).parameters.items()
+        if parameter.kind in named and name not in ("self", *without)
     }
 
 
@@ -300,19 +300,19 @@ def call_with_table(
     return None
 
 
-def _missing_key_note(one: Declared[Any, Any] | None) -> str:
-    if one is None:
+def _missing_key_note(field: Declared[Any, Any] | None) -> str:
+    if field is None:
         return ""
-    if one.measure is None:
-        return f" ({one.words.rstrip('.')})"
-    example = one.measure.example if one.unit == "1" else f'"{one.measure.example}"'
-    return f" ({one.words.rstrip('.')}); write for example {one.name} = {example}"
+    if field.measure is None:
+        return f" ({field.words.rstrip('.')})"
+    example = field.measure.example if field.unit == "1" else f'"{field.measure.example}"'
+    return f" ({field.words.rstrip('.')}); write for example {field.name} = {example}"
 
 
 def key_in_message(words: str, where: KeyPath, table: Mapping[str, Any]) -> KeyPath:
     """Return the place of the first key of a table that a message names, else of the table."""
-    found = {name: re.search(rf"\b{re.escape(name)}\b", words) for name in table}
-    starts = {name: match.start() for name, match in found.items() if match is not None}
+    matches = {name: re.search(rf"\b{re.escape(name)}\b", words) for name in table}
+    starts = {name: match.start() for name, match in matches.items() if match is not None}
     if starts:
         first = min(starts, key=lambda name: starts[name])
         return _innermost_key(words, (*where, first), table[first])
@@ -355,8 +355,8 @@ def in_toml(words: str) -> str:
     words = _OPERATION.sub(
         r"operations = [{ \g<name> = { factor = \g<value> } }] in [motion]", words
     )
-    words = _TUPLE.sub(lambda found: f"[{_quoted(found['values'])}]", words)
-    words = _VALUE.sub(lambda found: f"{found['name']} = {_quoted(found['value'])}", words)
+    words = _TUPLE.sub(lambda match: f"[{_quoted(match['values'])}]", words)
+    words = _VALUE.sub(lambda match: f"{match['name']} = {_quoted(match['value'])}", words)
     return _CALL.sub(_rewritten_call, words)
 
 
@@ -367,7 +367,7 @@ def _quoted(text: str) -> str:
 def _rewritten_call(call: re.Match[str]) -> str:
     """Rewrite a call of the class of a part, of a system, or of an object of the run."""
     kind = call["kind"]
-    given = [f"{one['name']} = {one['value']}" for one in _GIVEN.finditer(call["values"])]
+    given = [f"{match['name']} = {match['value']}" for match in _GIVEN.finditer(call["values"])]
     if kind in _OBJECTS:
         return f"{_OBJECTS[kind]} = {{ {', '.join(given) or '...'} }}"
     slot = _SYSTEM.get(kind)

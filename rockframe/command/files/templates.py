@@ -229,7 +229,7 @@ def _table_header(table: str, words: str) -> Iterator[str]:
 def _part_lines(slot: str, name: str, kind: type[Component]) -> Iterator[str]:
     yield from _component_lines(slot, _summary(kind), kind, f'type = "{name}"')
     for key, inner in inner_parts(kind).items():
-        words = " or ".join(f"[{one}]" for one in inner.slots)
+        words = " or ".join(f"[{table}]" for table in inner.slots)
         header = f"[[{slot}.{key}]]" if inner.several else f"[{slot}.{key}]"
         yield from _commented_key(f"# {header}", f"must be given: as {words}")
     if not kind.declared():
@@ -249,24 +249,26 @@ def _component_lines(
     yield from _table_header(table, words)
     if first is not None:
         yield first
-    for name, one in kind.declared().items():
+    for name, field in kind.declared().items():
         if name not in inner_parts(kind):
-            must = "must be given: " if one.default is REQUIRED else ""
-            meaning = f"{must}{_without_markup(one.words)}"
-            yield from _commented_key(f"# {name} = {_example(one)}", meaning)
+            must = "must be given: " if field.default is REQUIRED else ""
+            meaning = f"{must}{_without_markup(field.words)}"
+            yield from _commented_key(f"# {name} = {_example(field)}", meaning)
 
 
-def _example(one: Declared[Any, Any]) -> str:
-    if isinstance(one, Choice):
-        return f'"{one.default}"'
-    if one.measure is None:
-        return "true" if isinstance(one, Flag) else "2" if isinstance(one, Count) else '"anchor"'
-    if isinstance(one.default, int | float) and not isinstance(one.default, bool):
-        return f"{one.default}"
-    if one.measure.example.startswith("("):  # a point
-        return f"[{one.measure.example[1:-1]}]"
-    plain = one.unit == "1"
-    return one.measure.example if plain else f'"{one.measure.example}"'
+def _example(field: Declared[Any, Any]) -> str:
+    if isinstance(field, Choice):
+        return f'"{field.default}"'
+    if field.measure is None:
+        return (
+            "true" if isinstance(field, Flag) else "2" if isinstance(field, Count) else '"anchor"'
+        )
+    if isinstance(field.default, int | float) and not isinstance(field.default, bool):
+        return f"{field.default}"
+    if field.measure.example.startswith("("):  # a point
+        return f"[{field.measure.example[1:-1]}]"
+    plain = field.unit == "1"
+    return field.measure.example if plain else f'"{field.measure.example}"'
 
 
 def _function_lines(
@@ -335,8 +337,8 @@ def _wrapped_keys(words: str) -> Iterator[str]:
 def _commented_key(head: str, words: str) -> Iterator[str]:
     """Write a key, followed by its meaning in wrapped lines."""
     column = max(len(head) + 2, 34)
-    kept = _UNIT.sub(lambda unit: unit[0].replace(" ", _NO_BREAK), words)
-    lines = wrap(kept, max(_WIDTH - column, 40), break_on_hyphens=False) or [""]
+    unbroken = _UNIT.sub(lambda unit: unit[0].replace(" ", _NO_BREAK), words)
+    lines = wrap(unbroken, max(_WIDTH - column, 40), break_on_hyphens=False) or [""]
     pieces = [line.replace(_NO_BREAK, " ") for line in lines]
     yield f"{head.ljust(column)}{pieces[0]}".rstrip()
     yield from (f"#{' ' * (column - 1)}{piece}" for piece in pieces[1:])
@@ -350,11 +352,11 @@ def _summary(documented: object) -> str:
 def _meanings(documented: object) -> dict[str, str]:
     """Return the description of each parameter in a numpydoc docstring."""
     section = _PARAMETERS.search(getdoc(documented) or "")
-    found: dict[str, str] = {}
+    meanings: dict[str, str] = {}
     for names, words in _PARAMETER_ENTRY.findall(section[1] if section else ""):
         for name in names.split(","):
-            found[name.strip(" *")] = _without_markup(" ".join(words.split()))
-    return found
+            meanings[name.strip(" *")] = _without_markup(" ".join(words.split()))
+    return meanings
 
 
 def _without_markup(words: str) -> str:

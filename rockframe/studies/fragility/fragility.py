@@ -179,8 +179,8 @@ def fragility(
     """
     if isinstance(runs, dict):
         arguments = {"limits": limits, "motions": motions, "pooled": pooled or None}
-        others = [name for name, one in arguments.items() if one is not None]
-        return _fit_counts(runs, intensity, period, bands, confidence, others)
+        given = [name for name, value in arguments.items() if value is not None]
+        return _fit_counts(runs, intensity, period, bands, confidence, given)
     runs = check_runs(runs, owner=_OWNER)
     listed = _listed_measures(intensity)
     pooled_axes = checked_list(pooled, owner=_OWNER, name="pooled", of="names")
@@ -190,19 +190,21 @@ def fragility(
         msg = f"{_OWNER}: capacities are those of rf.incremental_dynamic_analysis, found a sweep"
         raise SchemaError(msg)
     states = _read_states(runs, limits)
-    measures = [measure_of_runs(runs, one, period, motions, owner=_OWNER) for one in listed]
-    if len({one.name for one in measures}) < len(measures):
+    measures = [measure_of_runs(runs, measure, period, motions, owner=_OWNER) for measure in listed]
+    if len({measure.name for measure in measures}) < len(measures):
         msg = f"{_OWNER}: the two intensity measures are one, {measures[0].name}; give another"
         raise ComponentError(msg)
-    if ambiguous := [str(one.name) for one in measures if one.name in structures.groups]:
+    if ambiguous := [
+        str(measure.name) for measure in measures if measure.name in structures.groups
+    ]:
         msg = (
             f"{_OWNER}: the structures differ along {ambiguous[0]}, which is also the name of the "
             "intensity measure; give the intensity as a DataArray of another name"
         )
         raise ComponentError(msg)
     verdicts = [exceeds(runs, state) for state in states]
-    sizes = [(len(np.unique(motion_numbers(one))), one.size)
-             for one in structures.parts(verdicts[-1])]  # fmt: skip
+    sizes = [(len(np.unique(motion_numbers(structure))), structure.size)
+             for structure in structures.parts(verdicts[-1])]  # fmt: skip
     repeated = not of_capacities and any(motions < count for motions, count in sizes)
     of_runs = Bands.JACKKNIFE if max(sizes)[0] <= _MAX_JACKKNIFE_MOTIONS else Bands.SANDWICH
     common = checked_name(dispersion, _DISPERSIONS, owner=_OWNER, name="dispersion") == _COMMON
@@ -217,8 +219,8 @@ def fragility(
         _read_bands(bands, default_bands, len(measures)), read_confidence(confidence, owner=_OWNER)
     )
     by_motion = settings.bands is not Bands.PROFILE and (repeated or common)
-    parts = zip(*(structures.parts(one) for one in (*verdicts, *measures)), strict=True)
-    found: list[StructureTrials] = []
+    parts = zip(*(structures.parts(array) for array in (*verdicts, *measures)), strict=True)
+    samples: list[StructureTrials] = []
     fits: list[Fit] | None = [] if common else None
     analyses = structures.parts(runs) if of_capacities else repeat(runs)
     for part, analysis in zip(parts, analyses, strict=False):
@@ -227,22 +229,22 @@ def fragility(
             fits += _fit_ordered(state_verdicts, along[0], states, settings.bands)
         for state, verdict in zip(states, state_verdicts, strict=True):
             if of_capacities:
-                found.append(_trials_of_state(analysis, state, verdict, along))
+                samples.append(_trials_of_state(analysis, state, verdict, along))
             else:
-                found.append(trials_of_runs(verdict, along, by_motion=by_motion))
+                samples.append(trials_of_runs(verdict, along, by_motion=by_motion))
     structure_sizes = dict(zip(structures.groups, structures.shape, strict=True))
     attributes: dict[str, Any] = {"trials": trials, "dispersions": dispersion}
     if pooled_axes:
         attributes[POOLED_ATTRIBUTE] = ", ".join(pooled_axes)
     dataset = fragility_dataset(
-        found, {**structure_sizes, "limit_state": len(states)},
-        [(str(one.name), dict(one.attrs)) for one in measures], settings,
+        samples, {**structure_sizes, "limit_state": len(states)},
+        [(str(measure.name), dict(measure.attrs)) for measure in measures], settings,
         attributes | period_attribute(runs, listed, period, owner=_OWNER), fits,
     )  # fmt: skip
     dataset = with_labels(dataset, structures.coordinates)
     dataset = with_variables(dataset, labels_of_states(states))
     if of_capacities:
-        below = np.array([int((~one.trials.has_lower).sum()) for one in found])
+        below = np.array([int((~sample.trials.has_lower).sum()) for sample in samples])
         below = below.reshape((*structure_sizes.values(), len(states)))
         dataset = with_variables(
             dataset, {"below_scan_count": below}, over=(*structure_sizes, *LIMIT_STATE)
@@ -265,14 +267,14 @@ def _fit_counts(
     period: PeriodLike | None,
     bands: str | None,
     confidence: RatioLike,
-    others: Sequence[str],
+    given: Sequence[str],
 ) -> xr.Dataset:
     """Fit a capacity to counts: intensities, and how many of how many trials exceeded there."""
-    if set(counts) != set(_COLUMNS) or others or not isinstance(measure, str):
-        found = ", ".join(map(short_repr, [*counts, *others]))
+    if set(counts) != set(_COLUMNS) or given or not isinstance(measure, str):
+        names = ", ".join(map(short_repr, [*counts, *given]))
         msg = (
             f"{_OWNER}: counts have {', '.join(map(repr, _COLUMNS))} and go with one name of a "
-            f"measure, without limits, motions and pooled; found {found} and {short_repr(measure)}"
+            f"measure, without limits, motions and pooled; found {names} and {short_repr(measure)}"
         )
         raise ComponentError(msg)
     intensity, exceeded, trials = (counts[name] for name in _COLUMNS)
@@ -282,10 +284,10 @@ def _fit_counts(
     over = np.asarray(exceeded, dtype=np.float64)
     count = np.broadcast_to(np.asarray(trials, dtype=np.float64), values.shape)
     wrong = over.shape != values.shape or np.any(values <= 0.0)
-    whole = (
+    are_counts = (
         not wrong and np.array_equal(over, np.round(over)) and np.all((over >= 0) & (over <= count))
     )
-    if wrong or not whole or not np.array_equal(count, np.round(count)):
+    if wrong or not are_counts or not np.array_equal(count, np.round(count)):
         msg = (
             f"{_OWNER}: expected intensities above zero and for each of them a number of "
             f"exceedances from 0 to that of the trials, got {short_repr(exceeded)} of "
@@ -301,12 +303,12 @@ def _fit_counts(
     verdicts = np.repeat(np.tile([1.0, 0.0], len(values)), times)
     runs = np.repeat(np.repeat(values, 2), times)[:, None], verdicts
     attributes: dict[str, Any] = {"trials": "trials"}
-    found = fragility_dataset(
+    dataset = fragility_dataset(
         [StructureTrials(counted_trials, runs, 0, len(verdicts))],
         {"limit_state": 1}, [(which.name, which.attributes())], settings,
         attributes | period_attribute(None, [measure], period, owner=_OWNER),
     ).isel(limit_state=0)  # fmt: skip
-    return found.assign_attrs(verdict=fragility_sentences(found))
+    return dataset.assign_attrs(verdict=fragility_sentences(dataset))
 
 
 def _read_states(runs: xr.Dataset, limits: Iterable[object] | None) -> tuple[LimitState, ...]:
@@ -334,8 +336,8 @@ def _trials_of_state(
     if SCALE not in analysis.dims:
         msg = f"{_OWNER}: found a dynamic analysis at one scale; expected one with all its scales"
         raise SchemaError(msg)
-    one = analysis.sel(limit_state=state.name) if "limit_state" in analysis.dims else analysis
-    return trials_of_capacities(one, verdict.notnull(), measures)
+    of_state = analysis.sel(limit_state=state.name) if "limit_state" in analysis.dims else analysis
+    return trials_of_capacities(of_state, verdict.notnull(), measures)
 
 
 def _fit_ordered(
@@ -345,12 +347,12 @@ def _fit_ordered(
     bands: Bands,
 ) -> list[Fit]:
     """Fit all limit states of a structure with one dispersion."""
-    rows = np.stack([one.to_numpy().ravel().astype(np.float64) for one in verdicts])
+    rows = np.stack([verdict.to_numpy().ravel().astype(np.float64) for verdict in verdicts])
     intensity = flatten_like(measure, verdicts[0]).astype(np.float64)
-    kept = ~np.isnan(rows).any(axis=0) & (intensity > 0.0) & np.isfinite(intensity)
+    is_valid = ~np.isnan(rows).any(axis=0) & (intensity > 0.0) & np.isfinite(intensity)
     names = [state.name for state in states]
-    motions = motion_numbers(verdicts[0])[kept]
-    return ordered_fits(np.log(intensity[kept]), rows[:, kept], motions, names, bands)
+    motions = motion_numbers(verdicts[0])[is_valid]
+    return ordered_fits(np.log(intensity[is_valid]), rows[:, is_valid], motions, names, bands)
 
 
 def _sliding_sentence(runs: xr.Dataset, *, of_capacities: bool) -> str:
@@ -375,8 +377,8 @@ def _listed_measures(value: object) -> list[object]:
 def _read_bands(value: str | None, default: Bands, measures: int) -> Bands:
     if value is None:
         return default if measures == 1 or default is not Bands.PROFILE else Bands.SANDWICH
-    found = checked_choice(Bands, value, owner=_OWNER, name="bands")
-    if found is Bands.PROFILE and measures > 1:
+    bands = checked_choice(Bands, value, owner=_OWNER, name="bands")
+    if bands is Bands.PROFILE and measures > 1:
         msg = f"{_OWNER}: bands by profile are those of one intensity measure; use 'jackknife'"
         raise ComponentError(msg)
-    return found
+    return bands

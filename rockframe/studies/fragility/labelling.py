@@ -66,10 +66,10 @@ class _FittedTrials:
 
     @classmethod
     def from_trials(
-        cls, found: StructureTrials, settings: BoundSettings, given: Fit | None = None
+        cls, structure: StructureTrials, settings: BoundSettings, given: Fit | None = None
     ) -> "_FittedTrials":
         """Fit, unless a fit is given, and find the region if it determines the bounds."""
-        trials, fitted = found.trials, given or fit(found.trials, settings.bands)
+        trials, fitted = structure.trials, given or fit(structure.trials, settings.bands)
         separation = None
         if fitted.status is FragilityStatus.SEPARATED and trials.measures == 1:
             separation = gap(trials) or (math.nan, math.nan)
@@ -78,7 +78,7 @@ class _FittedTrials:
         counted = trials.cluster is None and not np.any(trials.has_lower & trials.has_upper)
         bands = settings.bands if separation is None else Bands.PROFILE
         has_bounds = (separation is not None and counted) or fitted.status is FragilityStatus.FITTED
-        has_bounds = has_bounds and enough_trials(bands, found.independent) and fitted.complete
+        has_bounds = has_bounds and enough_trials(bands, structure.independent) and fitted.complete
         edge = None
         if has_bounds and bands is Bands.PROFILE:
             edge = boundary(trials, fitted, settings.confidence)
@@ -86,7 +86,7 @@ class _FittedTrials:
 
 
 def fragility_dataset(
-    found: Sequence[StructureTrials],
+    structures: Sequence[StructureTrials],
     sizes: Mapping[str, int],
     measures: Sequence[MeasureLabel],
     settings: BoundSettings,
@@ -97,25 +97,27 @@ def fragility_dataset(
 
     For each structure and limit state, with the `sizes`, the last one varying fastest.
     """
-    items = [None] * len(found) if fits is None else fits
+    items = [None] * len(structures) if fits is None else fits
     every = [
-        _FittedTrials.from_trials(one, settings, each)
-        for one, each in zip(found, items, strict=True)
+        _FittedTrials.from_trials(structure, settings, given)
+        for structure, given in zip(structures, items, strict=True)
     ]
     values: dict[str, Any] = {
-        "fragility_status": [one.fit.status for one in every],
-        "trial_count": [one.trials.weight.sum() for one in found],
-        "left_out_count": [one.left_out for one in found],
-        "independent_count": [one.independent for one in found],
+        "fragility_status": [fitted.fit.status for fitted in every],
+        "trial_count": [structure.trials.weight.sum() for structure in structures],
+        "left_out_count": [structure.left_out for structure in structures],
+        "independent_count": [structure.independent for structure in structures],
     }
     single_measure = len(measures) == 1
     if single_measure:
-        rows = [_parameters(each, settings) for each in every]
+        rows = [_parameters(fitted, settings) for fitted in every]
         values |= {name: [row[name] for row in rows] for name in rows[0]}
     else:
         values |= {
-            "fitted_coefficient": [one.fit.coefficients for one in every],
-            "fitted_coefficient_error": [np.sqrt(np.diag(one.fit.covariance)) for one in every],
+            "fitted_coefficient": [fitted.fit.coefficients for fitted in every],
+            "fitted_coefficient_error": [
+                np.sqrt(np.diag(fitted.fit.covariance)) for fitted in every
+            ],
         }
     dataset = build_dataset(
         _reshaped(values, sizes),
@@ -127,39 +129,39 @@ def fragility_dataset(
         dataset = with_variables(dataset, {"coefficient": names})
     dataset = _with_curves(dataset, every, sizes, measures, settings)
     if single_measure:
-        runs = [one.runs for one in found if one.runs is not None]
-        runs = runs or _capacity_verdicts([one.trials for one in found])
+        runs = [structure.runs for structure in structures if structure.runs is not None]
+        runs = runs or _capacity_verdicts([structure.trials for structure in structures])
         dataset = with_stripes(dataset, runs, sizes, settings.confidence, measures[0][1])
     return dataset
 
 
 def _reshaped(values: Mapping[str, Any], sizes: Mapping[str, int]) -> dict[str, AnyArray]:
     """Return values in a row as arrays over structures and limit states."""
-    arrays = {name: np.asarray(each) for name, each in values.items()}
-    return {n: each.reshape(*sizes.values(), *each.shape[1:]) for n, each in arrays.items()}
+    arrays = {name: np.asarray(value) for name, value in values.items()}
+    return {n: array.reshape(*sizes.values(), *array.shape[1:]) for n, array in arrays.items()}
 
 
-def _parameters(each: _FittedTrials, settings: BoundSettings) -> dict[str, float]:
+def _parameters(fitted: _FittedTrials, settings: BoundSettings) -> dict[str, float]:
     ends = (math.nan, math.nan)
     errors, log_errors, bounds = np.full(2, np.nan), np.full(2, np.nan), np.full((2, 2), np.nan)
-    if each.gap is not None:
+    if fitted.gap is not None:
         # the likelihood increases as the dispersion decreases; all medians between the ends are
         # equally likely
-        ends = each.gap
+        ends = fitted.gap
         log_median, spread = 0.5 * sum(ends), 0.0
     else:
-        (log_median, log_spread), covariance = _log_parameters(each.fit)
+        (log_median, log_spread), covariance = _log_parameters(fitted.fit)
         spread, log_errors = _exponential(log_spread), np.sqrt(np.diag(covariance))
         errors = log_errors * np.array([1.0, spread])
-    if each.boundary is not None:
-        bounds = _parameter_ranges(each.boundary)
-    elif each.has_bounds:
-        clusters = each.fit.clusters
+    if fitted.boundary is not None:
+        bounds = _parameter_ranges(fitted.boundary)
+    elif fitted.has_bounds:
+        clusters = fitted.fit.clusters
         # a dispersion is positive: the interval is that of its logarithm
         middle = np.array([log_median, math.log(spread) + _log_dispersion_bias(clusters)])
         half_width: Array = settings.standard_errors(clusters) * log_errors
         bounds = middle[:, None] + half_width[:, None] * np.array([-1.0, 1.0])
-        bounds[1] = [_exponential(one) for one in bounds[1]]
+        bounds[1] = [_exponential(bound) for bound in bounds[1]]
     return {
         "median_intensity": _exponential(log_median),
         "median_intensity_lower_bound": _exponential(bounds[0, 0]),
@@ -186,7 +188,7 @@ def _log_parameters(fit: Fit) -> tuple[Array, Array]:
     if fit.leave_one_out is not None and fit.complete:
         rows, multiplicity = fit.leave_one_out
         return best, jackknife(best, _log_median_dispersion(rows.T).T, multiplicity)
-    intercept, slope = (float(one) for one in fit.coefficients)
+    intercept, slope = (float(coefficient) for coefficient in fit.coefficients)
     jacobian = np.array([[-1.0 / slope, intercept / slope**2], [0.0, -1.0 / slope]])
     return best, jacobian @ fit.covariance @ jacobian.T
 
@@ -229,27 +231,27 @@ def _with_curves(
     count = _CURVE_POINTS if len(measures) == 1 else _SURFACE_POINTS
     grids = {name: _intensity_grid(every, k, count) for k, (name, _) in enumerate(measures)}
     mesh = np.meshgrid(*grids.values(), indexing="ij")
-    rows = np.stack([np.ones(mesh[0].size), *(np.log(one).ravel() for one in mesh)])
-    shares = ndtr(np.stack([_eta(each, rows, settings) for each in every]))
+    rows = np.stack([np.ones(mesh[0].size), *(np.log(intensity).ravel() for intensity in mesh)])
+    shares = ndtr(np.stack([_eta(fitted, rows, settings) for fitted in every]))
     shares = shares.reshape(len(every), 3, *mesh[0].shape)
     values = {f"exceedance_probability{end}": shares[:, k] for k, end in enumerate(BOUND_SUFFIXES)}
     dataset = with_variables(dataset, _reshaped(values, sizes), over=(*sizes, *grids))
     return with_labels(dataset, {name: (name, grids[name], about) for name, about in measures})
 
 
-def _eta(each: _FittedTrials, rows: Array, settings: BoundSettings) -> Array:
+def _eta(fitted: _FittedTrials, rows: Array, settings: BoundSettings) -> Array:
     """Return eta and its bounds where coefficients multiply `rows`; shape (3, intensities)."""
-    if each.gap is not None:
-        eta = np.where(rows[1] < 0.5 * sum(each.gap), -np.inf, np.inf)
+    if fitted.gap is not None:
+        eta = np.where(rows[1] < 0.5 * sum(fitted.gap), -np.inf, np.inf)
     else:
-        eta = each.fit.coefficients @ rows
-    if each.boundary is not None:
-        at = each.boundary.T @ rows
+        eta = fitted.fit.coefficients @ rows
+    if fitted.boundary is not None:
+        at = fitted.boundary.T @ rows
         return np.stack([eta, at.min(axis=0), at.max(axis=0)])
     half_width = np.full(len(eta), np.nan)
-    if each.has_bounds:
-        squares = np.einsum("ik,ij,jk->k", rows, each.fit.covariance, rows)
-        half_width = settings.standard_errors(each.fit.clusters) * np.sqrt(squares)
+    if fitted.has_bounds:
+        squares = np.einsum("ik,ij,jk->k", rows, fitted.fit.covariance, rows)
+        half_width = settings.standard_errors(fitted.fit.clusters) * np.sqrt(squares)
     return np.stack([eta, eta - half_width, eta + half_width])
 
 
@@ -275,11 +277,11 @@ def with_stripes(
     size = len(middles)
     count, exceeded = np.zeros((2, len(counted), size), dtype=np.int64)
     for row, (columns, verdict) in enumerate(counted):
-        kept = ~np.isnan(verdict) & (columns[:, 0] > 0.0)
-        place = np.searchsorted(cuts, np.log(columns[kept, 0]), side="right") - 1
+        is_valid = ~np.isnan(verdict) & (columns[:, 0] > 0.0)
+        place = np.searchsorted(cuts, np.log(columns[is_valid, 0]), side="right") - 1
         place = np.clip(place, 0, max(size - 1, 0))
         count[row] = np.bincount(place, minlength=size)
-        exceeded[row] = np.bincount(place, weights=verdict[kept], minlength=size)
+        exceeded[row] = np.bincount(place, weights=verdict[is_valid], minlength=size)
     lower, upper = clopper_pearson(exceeded, count, confidence)
     with np.errstate(invalid="ignore"):
         fraction = exceeded / count
@@ -300,19 +302,22 @@ def with_stripes(
 
 def _capacity_verdicts(trials: Sequence[Trials]) -> list[tuple[Array, Array]]:
     """Return verdicts on capacities at intensities that divide them into equal groups."""
-    every = [np.where(each.has_upper, each.upper[:, 0], each.lower[:, 0]) for each in trials]
+    every = [
+        np.where(capacities.has_upper, capacities.upper[:, 0], capacities.lower[:, 0])
+        for capacities in trials
+    ]
     ends = np.concatenate(every)
     if not len(ends):
         return [(np.empty((0, 1)), np.empty(0)) for _ in trials]
     levels = np.unique(np.quantile(ends, np.linspace(0.05, 0.95, _BINS), method="nearest"))
-    found: list[tuple[Array, Array]] = []
-    for each in trials:
-        over = each.has_upper[:, None] & (each.upper[:, :1] <= levels)
-        under = each.has_lower[:, None] & (each.lower[:, :1] >= levels)
+    verdicts: list[tuple[Array, Array]] = []
+    for capacities in trials:
+        over = capacities.has_upper[:, None] & (capacities.upper[:, :1] <= levels)
+        under = capacities.has_lower[:, None] & (capacities.lower[:, :1] >= levels)
         verdict = np.where(over, 1.0, np.where(under, 0.0, np.nan))
         columns = np.exp(np.broadcast_to(levels, verdict.shape))
-        found.append((columns.ravel()[:, None], verdict.ravel()))
-    return found
+        verdicts.append((columns.ravel()[:, None], verdict.ravel()))
+    return verdicts
 
 
 def _intensity_grid(every: Sequence[_FittedTrials], measure: int, count: int) -> Array:
@@ -320,8 +325,8 @@ def _intensity_grid(every: Sequence[_FittedTrials], measure: int, count: int) ->
     ends = np.concatenate(
         [
             values[has, measure]
-            for each in (one.trials for one in every)
-            for values, has in ((each.lower, each.has_lower), (each.upper, each.has_upper))
+            for trials in (fitted.trials for fitted in every)
+            for values, has in ((trials.lower, trials.has_lower), (trials.upper, trials.has_upper))
         ]
     )
     least, most = (float(ends.min()), float(ends.max())) if len(ends) else (-1.0, 1.0)

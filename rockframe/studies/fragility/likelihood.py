@@ -69,33 +69,33 @@ class Fit:
 
 def fit(trials: Trials, bands: Bands) -> Fit:
     """Find the most likely coefficients, and their covariance by the given `bands`."""
-    found = _maximum_likelihood(trials)
-    if found.status is not FragilityStatus.FITTED:
-        return found
+    fitted = _maximum_likelihood(trials)
+    if fitted.status is not FragilityStatus.FITTED:
+        return fitted
     if bands is Bands.SANDWICH:
-        of_trial, weight = scores(trials, found.coefficients), trials.weight
+        of_trial, weight = scores(trials, fitted.coefficients), trials.weight
         if trials.cluster is None:
-            each = of_trial / weight[:, None]
+            cluster_scores = of_trial / weight[:, None]
         else:
-            each = cluster_sums(of_trial, trials.cluster)
-            weight = np.ones(len(each))
-        return replace(found, covariance=sandwich(found.covariance, each, weight))
+            cluster_scores = cluster_sums(of_trial, trials.cluster)
+            weight = np.ones(len(cluster_scores))
+        return replace(fitted, covariance=sandwich(fitted.covariance, cluster_scores, weight))
     if bands is Bands.JACKKNIFE:
-        each = list(_leave_one_out(trials))
-        rows = np.array([_refit(rest, found.coefficients) for rest, _ in each])
-        leave_one_out = rows, np.array([alike for _, alike in each])
+        subsets = list(_leave_one_out(trials))
+        rows = np.array([_refit(subset, fitted.coefficients) for subset, _ in subsets])
+        leave_one_out = rows, np.array([alike for _, alike in subsets])
         return replace(
-            found,
-            covariance=jackknife(found.coefficients, *leave_one_out),
+            fitted,
+            covariance=jackknife(fitted.coefficients, *leave_one_out),
             leave_one_out=leave_one_out,
         )
-    return found
+    return fitted
 
 
-def sandwich(inverse: Array, each: Array, weight: Array) -> Array:
+def sandwich(inverse: Array, cluster_scores: Array, weight: Array) -> Array:
     """Return the covariance from the scores of clusters, :eq:`eq-fragility-sandwich`."""
     count = float(weight.sum())
-    products = each.T @ (weight[:, None] * each)
+    products = cluster_scores.T @ (weight[:, None] * cluster_scores)
     return inverse @ (products * (count / (count - 1.0) if count > 1.0 else math.inf)) @ inverse
 
 
@@ -118,9 +118,9 @@ def _leave_one_out(trials: Trials) -> Iterator[tuple[Trials, float]]:
     """Return the trials without each cluster, or each trial, in turn, and how many are alike."""
     if trials.cluster is None:
         for row, weight in enumerate(trials.weight):
-            rest = trials.weight.copy()
-            rest[row] -= 1.0
-            yield trials.with_weights(rest), float(weight)
+            remaining = trials.weight.copy()
+            remaining[row] -= 1.0
+            yield trials.with_weights(remaining), float(weight)
         return
     for name in np.unique(trials.cluster):
         yield trials.with_weights(np.where(trials.cluster == name, 0.0, trials.weight)), 1.0
@@ -168,11 +168,11 @@ def _maximum_likelihood(trials: Trials) -> Fit:
         return unscale.T @ information(trials, unscale @ scaled) @ unscale
 
     start = np.concatenate([[0.0], np.full(trials.measures, 1.0 / math.sqrt(trials.measures))])
-    found: Any = optimize.minimize(
+    result: Any = optimize.minimize(
         value, start, method="trust-exact", jac=slope, hess=curvature,
         options={"gtol": 1e-9 * float(trials.weight.sum()), "maxiter": 500},
     )  # fmt: skip
-    scaled = cast("Array", found.x)
+    scaled = cast("Array", result.x)
     for _ in range(3):  # the last digits
         scaled = scaled - linalg.solve(curvature(scaled), slope(scaled), assume_a="pos")
     best = unscale @ scaled
@@ -225,7 +225,7 @@ def interval_information(
     )
 
 
-def boundary(trials: Trials, found: Fit, level: float) -> Array:
+def boundary(trials: Trials, fitted: Fit, level: float) -> Array:
     """Return the boundary of the region :eq:`eq-fragility-region`, for a fit of one measure.
 
     The range of any function of the coefficients in this region is its interval by profile
@@ -237,9 +237,9 @@ def boundary(trials: Trials, found: Fit, level: float) -> Array:
     from scipy import linalg
     from scipy.special import chdtri
 
-    separated = found.status is FragilityStatus.SEPARATED
+    separated = fitted.status is FragilityStatus.SEPARATED
     drop = float(chdtri(2.0 if separated else 1.0, 1.0 - level))
-    best, observed = found.coefficients, found.information
+    best, observed = fitted.coefficients, fitted.information
     if separated:
         best, observed, greatest = _point_within_region(trials, 0.25 * drop)
     else:
@@ -337,10 +337,10 @@ def _why_no_maximum(trials: Trials) -> FragilityStatus | None:
         return FragilityStatus.ONE_INTENSITY
     signed = np.concatenate([upper[trials.has_upper], -lower[trials.has_lower]])
     signed = np.unique(signed, axis=0)
-    found: Any = optimize.linprog(
+    result: Any = optimize.linprog(
         -signed.sum(axis=0), A_ub=-signed, b_ub=np.zeros(len(signed)), bounds=(-1.0, 1.0)
     )
-    return FragilityStatus.SEPARATED if -found.fun > 1e-9 * np.abs(signed).sum() else None
+    return FragilityStatus.SEPARATED if -result.fun > 1e-9 * np.abs(signed).sum() else None
 
 
 def _design(trials: Trials) -> tuple[Array, Array]:

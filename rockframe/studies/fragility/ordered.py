@@ -41,12 +41,12 @@ def ordered_fits(
             raise StudyError(msg)
     shares = verdicts.mean(axis=1) if verdicts.shape[1] else np.zeros(len(names))
     informative = (shares > 0.0) & (shares < 1.0)
-    found = [
-        Fit.none(FragilityStatus.ALL_EXCEEDED if one > 0.0 else FragilityStatus.NONE_EXCEEDED, 1)
-        for one in shares
+    fits = [
+        Fit.none(FragilityStatus.ALL_EXCEEDED if share > 0.0 else FragilityStatus.NONE_EXCEEDED, 1)
+        for share in shares
     ]
     if not informative.any():
-        return found
+        return fits
     # limit states exceeded by the same runs have the same capacity
     _, ranks = np.unique(shares[informative], return_inverse=True)
     ranks = ranks.max() - ranks
@@ -59,7 +59,8 @@ def ordered_fits(
         if one_intensity:
             status = FragilityStatus.ONE_INTENSITY
         return [
-            Fit.none(status, 1) if one else f for one, f in zip(informative, found, strict=True)
+            Fit.none(status, 1) if is_informative else fit
+            for is_informative, fit in zip(informative, fits, strict=True)
         ]
     covariance, rows = _covariance(logs, count, motions, best, bands)
     observed = interval_information(*_ends(logs, count, best))
@@ -67,10 +68,10 @@ def ordered_fits(
         pair = np.array([rank, len(best) - 1])
         square = np.ix_(pair, pair)
         leave_one_out = None if rows is None else (rows[:, pair], np.ones(len(rows)))
-        found[state] = Fit(
+        fits[state] = Fit(
             FragilityStatus.FITTED, best[pair], observed[square], covariance[square], leave_one_out
         )
-    return found
+    return fits
 
 
 def _ends(logs: Array, count: AnyArray, at: Array) -> tuple[Array, Array, Array, Array]:
@@ -150,10 +151,10 @@ def _covariance(
     names, place = np.unique(motions, return_inverse=True)
     rows = np.full((len(names), len(best)), np.nan)
     for k in range(len(names)):
-        kept = place != k
-        one = _fit_without_motion(logs[kept], count[kept], best)
-        if one is not None:
-            rows[k] = one
+        is_other = place != k
+        coefficients = _fit_without_motion(logs[is_other], count[is_other], best)
+        if coefficients is not None:
+            rows[k] = coefficients
     return jackknife(best, rows, np.ones(len(names))), rows
 
 
@@ -169,5 +170,5 @@ def _fit_without_motion(logs: Array, count: AnyArray, best: Array) -> Array | No
         return None
     place = np.searchsorted(kinds, np.arange(states), side="right") - 1
     first = np.searchsorted(place, np.arange(len(kinds) - 1))
-    found = _maximum_likelihood(logs, kind, len(first), best[[*first, states]])
-    return None if found is None else found[[*place, len(first)]]
+    coefficients = _maximum_likelihood(logs, kind, len(first), best[[*first, states]])
+    return None if coefficients is None else coefficients[[*place, len(first)]]

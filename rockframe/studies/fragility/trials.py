@@ -71,20 +71,20 @@ def structures_of(
     known = [*(name for name in differing if runs[name].dims), *unknown_dims]
     if CASE in pooled and CASE in dims:  # stands for all columns of its table
         columns = [name for name in known if CASE in runs[name].dims]
-        pooled = [*(one for one in pooled if one != CASE), *columns]
+        pooled = [*(name for name in pooled if name != CASE), *columns]
     _check_pooled(pooled, (*changed, *unknown_dims), known, owner)
-    kept = [name for name in known if name not in pooled]
+    not_pooled = [name for name in known if name not in pooled]
     scalar_names = [name for name in differing if not runs[name].dims]
-    found = _group_structures(runs, dims, kept, scalar_names)
-    sizes = [np.bincount(group).max() for group in found.groups.values()]
-    rest = [runs.sizes[dim] for dim in dims if dim not in found.groups]
-    if np.prod(found.shape) > 1 and np.prod([*sizes, *rest]) == 1:
+    structures = _group_structures(runs, dims, not_pooled, scalar_names)
+    sizes = [np.bincount(group).max() for group in structures.groups.values()]
+    other_sizes = [runs.sizes[dim] for dim in dims if dim not in structures.groups]
+    if np.prod(structures.shape) > 1 and np.prod([*sizes, *other_sizes]) == 1:
         msg = (
-            f"{owner}: each run has a structure of its own, for {', '.join(kept)} differ from run "
-            f"to run; pooled={tuple(kept)} takes all of them for one"
+            f"{owner}: each run has a structure of its own, for {', '.join(not_pooled)} differ "
+            f"from run to run; pooled={tuple(not_pooled)} takes all of them for one"
         )
         raise ComponentError(msg)
-    return found
+    return structures
 
 
 def check_one_structure(
@@ -98,14 +98,14 @@ def check_one_structure(
         if name in runs.coords and len(pd.unique(runs[name].to_numpy().ravel())) > 1
     ]
     _check_pooled(pooled, (*changed, CASE), several, owner)
-    rest = [one for one in several if one not in pooled]
+    names = [name for name in several if name not in pooled]
     if CASE in pooled:  # stands for all columns of its table
-        rest = [one for one in rest if CASE not in runs[one].dims]
-    if rest:
-        pick = f"pick one, for example runs.isel({rest[0]}=0), or " * (rest[0] in runs.dims)
+        names = [name for name in names if CASE not in runs[name].dims]
+    if names:
+        pick = f"pick one, for example runs.isel({names[0]}=0), or " * (names[0] in runs.dims)
         msg = (
-            f"{owner}: the runs are of several structures, by {', '.join(rest)}; {pick}take all of "
-            f"them for one, by pooled={tuple(rest)}"
+            f"{owner}: the runs are of several structures, by {', '.join(names)}; {pick}take all "
+            f"of them for one, by pooled={tuple(names)}"
         )
         raise StudyError(msg)
 
@@ -121,7 +121,7 @@ def _check_pooled(
     pooled: Sequence[str], known: Sequence[str], differing: Sequence[str], owner: str
 ) -> None:
     """Refuse to pool names that are not axes."""
-    wrong = [one for one in pooled if one not in known]
+    wrong = [name for name in pooled if name not in known]
     if wrong:
         msg = (
             f"{owner}: pooled names {', '.join(map(short_repr, wrong))}; what differs in these "
@@ -133,15 +133,15 @@ def _check_pooled(
 
 def _changes_of_axes(runs: xr.Dataset) -> dict[str, str]:
     """Return what each axis of a sweep changes."""
-    return {one["name"]: one["changes"] for one in json.loads(runs.attrs["axes_json"])}
+    return {axis["name"]: axis["changes"] for axis in json.loads(runs.attrs["axes_json"])}
 
 
 def _own_measures(runs: xr.Dataset, values: Sequence[object]) -> list[str]:
     """Return names of intensities that are arrays, along the axis of that name if there is one."""
-    columns = [column_of_runs(runs, one) for one in values]
+    columns = [column_of_runs(runs, value) for value in values]
     return [
-        str(one.name) for one in columns if isinstance(one, xr.DataArray)
-        and (one.name not in runs.coords or set(runs[one.name].dims) <= set(one.dims))
+        str(column.name) for column in columns if isinstance(column, xr.DataArray)
+        and (column.name not in runs.coords or set(runs[column.name].dims) <= set(column.dims))
     ]  # fmt: skip
 
 
@@ -169,18 +169,20 @@ def _check_motions(
 
 
 def _group_structures(
-    runs: xr.Dataset, dims: Sequence[str], kept: Sequence[str], scalar_names: Sequence[str]
+    runs: xr.Dataset, dims: Sequence[str], not_pooled: Sequence[str], scalar_names: Sequence[str]
 ) -> Structures:
     """Return the structures, numbered along each dimension, with their labels."""
     groups: dict[str, AnyArray] = {}
     coordinates = {
         str(name): runs[name].variable
-        for name in (*scalar_names, *kept)
+        for name in (*scalar_names, *not_pooled)
         if name in runs.coords and runs[name].ndim != 1
     }
     for dim in dims:
-        columns = [name for name in kept if name in runs.coords and runs[name].dims == (dim,)]
-        shared = dim in kept or any(dim in one.dims for one in coordinates.values())
+        columns = [name for name in not_pooled if name in runs.coords and runs[name].dims == (dim,)]
+        shared = dim in not_pooled or any(
+            dim in coordinate.dims for coordinate in coordinates.values()
+        )
         if not columns and not shared:
             continue
         first, group = _group_rows(
@@ -228,16 +230,16 @@ class Trials:
         ends = np.concatenate([logs, logs])
         is_upper = np.repeat([True, False], len(logs))
         weight = np.concatenate([exceeded, trials - exceeded]).astype(np.float64)
-        kept = weight > 0.0
-        numbers = None if cluster is None else np.tile(cluster, 2)[kept]
-        return cls(ends[kept], ends[kept], ~is_upper[kept], is_upper[kept], weight[kept], numbers)
+        used = weight > 0.0
+        numbers = None if cluster is None else np.tile(cluster, 2)[used]
+        return cls(ends[used], ends[used], ~is_upper[used], is_upper[used], weight[used], numbers)
 
     def with_weights(self, weight: Array) -> "Trials":
         """Return the trials that have a weight above zero, with that weight."""
-        kept = weight > 0.0
+        used = weight > 0.0
         return Trials(
-            self.lower[kept], self.upper[kept], self.has_lower[kept], self.has_upper[kept],
-            weight[kept], None if self.cluster is None else self.cluster[kept],
+            self.lower[used], self.upper[used], self.has_lower[used], self.has_upper[used],
+            weight[used], None if self.cluster is None else self.cluster[used],
         )  # fmt: skip
 
     @property
@@ -261,22 +263,24 @@ def trials_of_runs(
     exceeded: xr.DataArray, measures: Sequence[xr.DataArray], *, by_motion: bool
 ) -> StructureTrials:
     """Return the trials of runs, each of which exceeds a limit state or does not."""
-    columns = np.column_stack([flatten_like(one, exceeded).astype(np.float64) for one in measures])
+    columns = np.column_stack(
+        [flatten_like(measure, exceeded).astype(np.float64) for measure in measures]
+    )
     verdict = exceeded.to_numpy().ravel().astype(np.float64)
     runs = columns, verdict
-    kept = ~np.isnan(verdict) & np.all(columns > 0.0, axis=1) & np.all(np.isfinite(columns), axis=1)
-    cluster = motion_numbers(exceeded)[kept]
+    used = ~np.isnan(verdict) & np.all(columns > 0.0, axis=1) & np.all(np.isfinite(columns), axis=1)
+    cluster = motion_numbers(exceeded)[used]
     motions = len(np.unique(cluster))
-    logs, verdict = np.log(columns[kept]), verdict[kept]
+    logs, verdict = np.log(columns[used]), verdict[used]
     if not by_motion:  # what is alike is counted
         points, place = np.unique(logs, axis=0, return_inverse=True)
         size = len(points)
         over = np.bincount(place.ravel(), weights=verdict, minlength=size)
         every = np.bincount(place.ravel(), minlength=size).astype(np.float64)
-        found = Trials.from_verdicts(points, over.astype(np.float64), every)
+        trials = Trials.from_verdicts(points, over.astype(np.float64), every)
     else:
-        found = Trials.from_verdicts(logs, verdict, np.ones(len(verdict)), cluster)
-    return StructureTrials(found, runs, int((~kept).sum()), motions)
+        trials = Trials.from_verdicts(logs, verdict, np.ones(len(verdict)), cluster)
+    return StructureTrials(trials, runs, int((~used).sum()), motions)
 
 
 def trials_of_capacities(
@@ -296,9 +300,9 @@ def trials_of_capacities(
         for scale in (np.where(has_lower, below, scales[0]), np.where(has_upper, above, scales[-1]))
     )
     bounded = (has_lower | has_upper).astype(np.float64)
-    found = Trials(lower, upper, has_lower, has_upper, bounded, None).with_weights(bounded)
-    count = len(found.weight)
-    return StructureTrials(found, None, len(bounded) - count, count)
+    trials = Trials(lower, upper, has_lower, has_upper, bounded, None).with_weights(bounded)
+    count = len(trials.weight)
+    return StructureTrials(trials, None, len(bounded) - count, count)
 
 
 def _first_brackets(
@@ -321,10 +325,10 @@ def _first_brackets(
 def _rows_of_lines(values: xr.DataArray, sizes: Mapping[str, int], along: str = "") -> AnyArray:
     """Arrange values in a row for each line, along a dimension; one value each without it."""
     missing = {dim: size for dim, size in sizes.items() if dim not in values.dims}
-    own = [along] if along in values.dims else []
-    laid = values.variable.set_dims({**missing, **values.sizes}).transpose(*sizes, *own)
+    last = [along] if along in values.dims else []
+    laid = values.variable.set_dims({**missing, **values.sizes}).transpose(*sizes, *last)
     count = math.prod(sizes.values())
-    return laid.to_numpy().reshape((count, values.sizes[along] if own else 1))
+    return laid.to_numpy().reshape((count, values.sizes[along] if last else 1))
 
 
 def flatten_like(values: xr.DataArray, like: xr.DataArray) -> AnyArray:

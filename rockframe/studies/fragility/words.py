@@ -89,18 +89,18 @@ def verdict_of_fragility(dataset: xr.Dataset) -> str:
     text = str(dataset.attrs.get("verdict", ""))
     if "independent_count" not in dataset:  # as of a cloud
         return text
-    own = fragility_sentences(dataset)
-    return text if text.startswith(own) else own
+    sentences = fragility_sentences(dataset)
+    return text if text.startswith(sentences) else sentences
 
 
 def _other_fit_sentences(fragility: xr.Dataset) -> list[str]:
     """Describe the last limit state with a fit, if it is not the last of all."""
     for number in reversed(range(fragility.sizes.get(*LIMIT_STATE, 1) - 1)):
-        one = fragility.isel({LIMIT_STATE[0]: number})
-        status = one["fragility_status"].to_numpy().ravel()
+        state = fragility.isel({LIMIT_STATE[0]: number})
+        status = state["fragility_status"].to_numpy().ravel()
         fitted = status == FragilityStatus.FITTED
         if fitted.any() or (status == FragilityStatus.SEPARATED).any():
-            return [_fit_sentence(one, status, fitted)]
+            return [_fit_sentence(state, status, fitted)]
     return []
 
 
@@ -119,10 +119,10 @@ def in_own_units(fragility: xr.Dataset, measure: str, *, owner: str) -> xr.Datas
         name for name in map(str, fragility.variables)
         if name in (measure, "stripe_intensity") or name.startswith("median_intensity")
     ]  # fmt: skip
-    found = {name: labels_in_unit(fragility[name], unit, owner=owner) for name in names}
-    labels = {name: one for name, one in found.items() if name in fragility.coords}
+    converted = {name: labels_in_unit(fragility[name], unit, owner=owner) for name in names}
+    labels = {name: values for name, values in converted.items() if name in fragility.coords}
     return fragility.assign_coords(labels).assign({
-        name: one for name, one in found.items() if name not in labels
+        name: values for name, values in converted.items() if name not in labels
     })  # fmt: skip
 
 
@@ -138,19 +138,19 @@ def _fit_sentence(last: xr.Dataset, status: AnyArray, fitted: AnyArray) -> str:
     )
     head = f"{state} ({'; '.join(aside)})" if aside else state
     if not fitted.any():
-        whys = (FragilityStatus(one).name.lower().replace("_", " ") for one in status)
+        whys = (FragilityStatus(code).name.lower().replace("_", " ") for code in status)
         why = ", ".join(dict.fromkeys(whys))
         text = f"Against {head} no lognormal capacity fits over {over}: {why}."
         return text + _separation_sentence(last)
-    rest = f"; to {int((~fitted).sum())} of them none fits" if not fitted.all() else ""
+    note = f"; to {int((~fitted).sum())} of them none fits" if not fitted.all() else ""
     if len(names) > 1:
-        return f"Capacity against {head} fitted over {over}{rest}."
+        return f"Capacity against {head} fitted over {over}{note}."
     unit = unit_suffix_of(last["median_intensity"].attrs)
     median, dispersion = (
         _range_words(last[name].to_numpy().ravel()[fitted], digits)
         for name, digits in zip(("median_intensity", "dispersion"), _DIGITS, strict=True)
     )
-    return f"Capacity against {head}: median {over} {median}{unit}, dispersion {dispersion}{rest}."
+    return f"Capacity against {head}: median {over} {median}{unit}, dispersion {dispersion}{note}."
 
 
 def _range_words(values: Array, digits: int) -> str:
@@ -220,7 +220,7 @@ def bound_sentences(
         return []
     if measures > 1:
         return [f"With {least} {kind} {nominal}."]
-    size = max(one for one in known if one <= least)
+    size = max(size for size in known if size <= least)
     median, dispersion = (100.0 * share for share in known[size])
     return [
         f"With {least} {kind} {nominal}: of {size}, those of 95 % held the median in "

@@ -70,15 +70,17 @@ def read_numbers(value: object, measure: Measure, name: str, *, owner: str = OWN
             if np.ma.isMaskedArray(pair[0]) and np.ma.getmaskarray(pair[0]).any():
                 msg = f"{owner}: {name} has masked values; fill them in first"
                 raise ComponentError(msg)
-            value = decimal_products([float(one) for one in as_list(pair[0])], factor)
-        found = as_list(_as_python(value))
-        if not all(type(one) is float and math.isfinite(one) for one in found):
+            value = decimal_products([float(number) for number in as_list(pair[0])], factor)
+        numbers = as_list(_as_python(value))
+        if not all(type(number) is float and math.isfinite(number) for number in numbers):
             example = measure.example
-            found = [to_ratio(one, owner=owner, name=name, example=example) for one in found]
+            numbers = [
+                to_ratio(number, owner=owner, name=name, example=example) for number in numbers
+            ]
     else:
         _refuse_bare_numbers(value, measure, name, owner)
-        found = to_si_values(_as_python(value), measure, owner=owner, name=name)
-    return np.array(found, dtype=np.float64)
+        numbers = to_si_values(_as_python(value), measure, owner=owner, name=name)
+    return np.array(numbers, dtype=np.float64)
 
 
 def read_number(value: object, measure: Measure, *, owner: str, name: str) -> float:
@@ -92,8 +94,8 @@ def _with_own_unit(value: object) -> object:
     """Return an array that has an attribute ``units`` with that unit, and an iterator as a list."""
     if isinstance(value, Iterator):
         return list(cast("Iterator[object]", value))
-    own = None if isinstance(value, pint.Quantity | tuple) else attached_unit(value)
-    return value if own in (None, "", str(Unit.ONE)) else (value, own)
+    unit = None if isinstance(value, pint.Quantity | tuple) else attached_unit(value)
+    return value if unit in (None, "", str(Unit.ONE)) else (value, unit)
 
 
 def _refuse_bare_numbers(value: object, measure: Measure, name: str, owner: str) -> None:
@@ -145,8 +147,8 @@ def read_free_values(
 
 def read_in_unit_of(measure: str, unit: str, value: object, name: str, *, owner: str) -> Array:
     """Read values of an argument, which must be in the unit of a measure."""
-    values, own = read_free_values(value, name, owner=owner, expected=unit)
-    if own != unit:
+    values, own_unit = read_free_values(value, name, owner=owner, expected=unit)
+    if own_unit != unit:
         msg = f"{owner}: {measure} is in {unit}, got {short_repr(value)}"
         raise UnitsError(msg)
     return np.asarray(values, dtype=np.float64)
@@ -181,12 +183,12 @@ def _unit_of(value: object) -> str | None:
 
 def _measure_of(unit: str, name: str, owner: str, expected: str) -> Measure:
     """Find the kind of quantity that has a unit, the expected one before all others."""
-    for known in sorted(Unit, key=lambda one: one != expected):
+    for known in sorted(Unit, key=lambda candidate: candidate != expected):
         measure = Measure("a quantity", known, f"1 {known}")
         with suppress(UnitsError, ComponentError):
             read_number(f"1 {unit}", measure, owner=owner, name=name)
             return measure
-    known = ", ".join(str(one) for one in Unit)
+    known = ", ".join(str(candidate) for candidate in Unit)
     msg = f"{owner}: {name} has the unit {short_repr(unit)}; expected that of a quantity in {known}"
     raise UnitsError(msg)
 
@@ -208,40 +210,42 @@ def _as_python(value: Any) -> Any:
         return value.tolist()
     if isinstance(value, list):
         items = cast("list[Any]", value)
-        return [one.item() if isinstance(one, np.generic) else one for one in items]
+        return [item.item() if isinstance(item, np.generic) else item for item in items]
     return value
 
 
 def labels_in_unit(labels: xr.DataArray, unit: str | None, *, owner: str) -> xr.DataArray:
     """Return the labels of an axis in its unit, if a user has converted them to another one."""
-    own = labels.attrs.get("units")
-    if unit is None or own in (None, unit):
+    current = labels.attrs.get("units")
+    if unit is None or current in (None, unit):
         return labels
     measure = Measure("a value", Unit(unit), f"1 {unit}")
-    factor = read_number(f"1 {own}", measure, owner=owner, name=str(labels.name))
-    found = np.reshape(
+    factor = read_number(f"1 {current}", measure, owner=owner, name=str(labels.name))
+    converted = np.reshape(
         decimal_products(np.ravel(labels).astype(float).tolist(), factor), labels.shape
     )
     attributes = {**labels.attrs, "units": unit}
-    return xr.DataArray(found, labels.coords, labels.dims, labels.name, attributes)
+    return xr.DataArray(converted, labels.coords, labels.dims, labels.name, attributes)
 
 
 def in_units_of_schema(dataset: xr.Dataset, *, owner: str) -> xr.Dataset:
     """Return variables in their units, if a user has converted them, for example for a figure."""
-    other = {
+    units = {
         name: SCHEMA[str(name)].unit for name, values in dataset.data_vars.items()
         if name in SCHEMA and values.attrs.get("units") not in (None, SCHEMA[str(name)].unit)
     }  # fmt: skip
-    found = {name: labels_in_unit(dataset[name], unit, owner=owner) for name, unit in other.items()}
-    return dataset.assign(found)
+    converted = {
+        name: labels_in_unit(dataset[name], unit, owner=owner) for name, unit in units.items()
+    }
+    return dataset.assign(converted)
 
 
 def faults_of_values(name: str, values: AnyArray) -> list[str]:
     """Tell what is wrong with the values of an axis."""
-    kept, counts = np.unique(values, return_counts=True)
-    if not len(kept):
+    distinct, counts = np.unique(values, return_counts=True)
+    if not len(distinct):
         return [f"axis {name!r} has no values"]
-    twice = kept[counts > 1]
+    twice = distinct[counts > 1]
     return [f"axis {name!r} has the value {twice[0]!s} twice"] if len(twice) else []
 
 
@@ -265,9 +269,9 @@ class Grid:
         if self.motion_column is not None:
             rows = len(self.motion_column)
         table = {} if rows is None else {CASE: rows}
-        own = {axis.name: len(axis.values) for axis in self.axes}
+        of_axes = {axis.name: len(axis.values) for axis in self.axes}
         motions = {MOTION: self.motions} if self.motion_column is None else {}
-        return {**table, **own, **motions}
+        return {**table, **of_axes, **motions}
 
     @property
     def count(self) -> int:
@@ -282,8 +286,8 @@ class Grid:
         once.
         """
         scales = [axis.name for axis in self.axes if axis.changes is Changes.MOTION]
-        others = [axis.name for axis in self.axes if axis.changes is not Changes.MOTION]
-        return tuple(n for n in (MOTION, *scales, CASE, *others) if n in self.sizes)
+        other_axes = [axis.name for axis in self.axes if axis.changes is not Changes.MOTION]
+        return tuple(n for n in (MOTION, *scales, CASE, *other_axes) if n in self.sizes)
 
     @property
     def shape(self) -> list[int]:
@@ -292,35 +296,37 @@ class Grid:
 
     def indices(self, cases: range | AnyArray) -> dict[str, AnyArray]:
         """Return the places along all dimensions of cases, by their numbers in order of running."""
-        found = np.unravel_index(np.asarray(cases, dtype=np.int64), self.shape)
-        return dict(zip(self.order, found, strict=True))
+        indices = np.unravel_index(np.asarray(cases, dtype=np.int64), self.shape)
+        return dict(zip(self.order, indices, strict=True))
 
     def case_numbers(self, key: Sequence[Any]) -> AnyArray:
         """Return the numbers, in the order of running, of the cases at places along all dimensions.
 
         For each dimension, in the order of `sizes`: a place, a slice or a sequence of places.
         """
-        found = np.zeros((), dtype=np.int64)
-        for (name, size), one in zip(self.sizes.items(), key, strict=True):
+        numbers = np.zeros((), dtype=np.int64)
+        for (name, size), index in zip(self.sizes.items(), key, strict=True):
             later = self.order[self.order.index(name) + 1 :]
-            step = math.prod(self.sizes[each] for each in later)
-            indices = np.arange(*one.indices(size)) if isinstance(one, slice) else np.asarray(one)
-            found = np.add.outer(found, np.where(indices < 0, indices + size, indices) * step)
-        return found
+            step = math.prod(self.sizes[dim] for dim in later)
+            indices = (
+                np.arange(*index.indices(size)) if isinstance(index, slice) else np.asarray(index)
+            )
+            numbers = np.add.outer(numbers, np.where(indices < 0, indices + size, indices) * step)
+        return numbers
 
     def in_dimension_order(self, values: AnyArray) -> AnyArray:
         """Rearrange values from the order of running to that of the dimensions."""
         unraveled = values.reshape([*self.shape, *values.shape[1:]])
         axes = [self.order.index(name) for name in self.sizes]
-        rest = range(len(axes), unraveled.ndim)
-        return np.ascontiguousarray(unraveled.transpose([*axes, *rest]))
+        other_axes = range(len(axes), unraveled.ndim)
+        return np.ascontiguousarray(unraveled.transpose([*axes, *other_axes]))
 
     def values_of_cases(self, cases: range | AnyArray) -> tuple[tuple[Axis, AnyArray], ...]:
         """Return for each axis its values in some cases."""
         indices = self.indices(cases)
-        own = [(axis, axis.values[indices[axis.name]]) for axis in self.axes]
+        of_axes = [(axis, axis.values[indices[axis.name]]) for axis in self.axes]
         rows = [(axis, axis.values[indices[CASE]]) for axis in self.columns]
-        return (*own, *rows)
+        return (*of_axes, *rows)
 
     def motions_of(self, cases: range | AnyArray) -> AnyArray:
         """Return the numbers of the motions of some cases."""

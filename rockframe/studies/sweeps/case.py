@@ -140,7 +140,9 @@ def case(
             "rf.concat where sweeps differ along one axis, or in their motions, alone"
         )
         raise SchemaError(msg)
-    full = {name if name in dataset.dims else full_name(name): one for name, one in labels.items()}
+    full = {
+        name if name in dataset.dims else full_name(name): label for name, label in labels.items()
+    }
     axes = json.loads(attributes["axes_json"])
     units = {axis["name"]: axis["unit"] for axis in axes}
     indices = _indices_of_case(dataset, full, units)
@@ -151,12 +153,14 @@ def case(
     name = _value(dataset, MOTION, indices)
     motion = unscaled_motions(attributes, [name], motions, stored)[name]
     swept = _scene(None if scene is None else scene_of(scene), attributes, _OWNER)
-    of_scene = {axis: one for axis, one in values.items() if axis.changes in SYSTEM_AXES}
+    of_scene = {axis: value for axis, value in values.items() if axis.changes in SYSTEM_AXES}
     system = swept.system(of_scene)
     motion = system.motion if motion is None else motion
     options = json.loads(attributes["run_json"])
     options = {name: value for name, value in options.items() if value is not None}
-    start = {axis.parameter: one for axis, one in values.items() if axis.changes is Changes.START}
+    start = {
+        axis.parameter: value for axis, value in values.items() if axis.changes is Changes.START
+    }
     options["initial"] = InitialState.from_dict(options["initial"]).with_si(start)
     options["accuracy"] = Accuracy(**options["accuracy"])
     options["points"] = options.get("points") or None
@@ -198,11 +202,11 @@ def _indices_of_case(
     if faults:
         msg = f"{_OWNER}: {'; '.join(faults)}"
         raise StudyError(msg)
-    found = {
+    indices = {
         name: _index_of(dataset[name], name, value, units.get(name))
         for name, value in labels.items()
     }
-    return {name: found.get(name, 0) for name in dims}
+    return {name: indices.get(name, 0) for name in dims}
 
 
 def _index_of(labels: xr.DataArray, name: str, requested: Any, unit: str | None) -> int:
@@ -216,9 +220,9 @@ def _index_of(labels: xr.DataArray, name: str, requested: Any, unit: str | None)
             with suppress(OverflowError):  # of a whole number larger than any float
                 number = float(requested)
         else:
-            own = Unit(labels.attrs["units"] if unit is None else unit)
-            values = np.atleast_1d(labels_in_unit(labels, own, owner=_OWNER).to_numpy())
-            measure = Measure("a value", own, f"{values[0]:g} {own}")
+            label_unit = Unit(labels.attrs["units"] if unit is None else unit)
+            values = np.atleast_1d(labels_in_unit(labels, label_unit, owner=_OWNER).to_numpy())
+            measure = Measure("a value", label_unit, f"{values[0]:g} {label_unit}")
             number = read_number(requested, measure, owner=_OWNER, name=name)
         nearest = int(np.argmin(np.abs(values - number)))
         if np.isclose(values[nearest], number, rtol=1e-9, atol=0.0):
@@ -226,10 +230,12 @@ def _index_of(labels: xr.DataArray, name: str, requested: Any, unit: str | None)
         near = f"; the nearest is {values[nearest]}"
     else:
         typed = str(requested).strip().casefold()  # as whole numbers and truth values are typed
-        for place, one in enumerate(values.tolist()):
-            if one == requested or (isinstance(requested, str) and str(one).casefold() == typed):
+        for place, label in enumerate(values.tolist()):
+            if label == requested or (
+                isinstance(requested, str) and str(label).casefold() == typed
+            ):
                 return place
-    few = ", ".join(str(one) for one in values[:_MAX_LISTED].tolist())
+    few = ", ".join(str(value) for value in values[:_MAX_LISTED].tolist())
     more = f", ...{near}" if len(values) > _MAX_LISTED else ""
     msg = f"{_OWNER}: {name} has no {short_repr(requested)}; it has {few}{more}"
     raise StudyError(msg)
@@ -285,31 +291,33 @@ def unscaled_motions(
     available = {} if study is None else study.motions
     if stored is not None:
         available = stored.motions()
-    records = {} if value is None else {one.sha256: one for one in named_motions(value).values()}
-    found: dict[str, GroundMotion | None] = {}
+    records = (
+        {} if value is None else {motion.sha256: motion for motion in named_motions(value).values()}
+    )
+    motions: dict[str, GroundMotion | None] = {}
     for name in names:
-        one = described[name]
-        if one is None or name in available:
-            found[name] = None if one is None else available[name]
-        elif one.get("constructor"):
-            found[name] = GroundMotion.from_dict(one)
-        elif one["sha256"] in records:
-            found[name] = records[one["sha256"]]
+        description = described[name]
+        if description is None or name in available:
+            motions[name] = None if description is None else available[name]
+        elif description.get("constructor"):
+            motions[name] = GroundMotion.from_dict(description)
+        elif description["sha256"] in records:
+            motions[name] = records[description["sha256"]]
         elif needed:
             has = NOT_GIVEN if value is None else "is not among those given"
-            digest = one["sha256"][:12]
-            msg = f"{owner}: the record {one['name']!r} (sha256 {digest}...) {has}"
+            digest = description["sha256"][:12]
+            msg = f"{owner}: the record {description['name']!r} (sha256 {digest}...) {has}"
             raise StudyError(msg)
-    return found
+    return motions
 
 
 def store_of(runs: xr.Dataset) -> Store | None:
     """Return the folder that a dataset was opened from, if it was and holds its study."""
     try:
-        found = Store.open(Path(str(runs.encoding.get("source", ""))))
+        store = Store.open(Path(str(runs.encoding.get("source", ""))))
     except StudyError:
         return None
-    return found if found.digest == runs.attrs.get("study_sha256") else None
+    return store if store.digest == runs.attrs.get("study_sha256") else None
 
 
 def known_motions(runs: xr.Dataset, motions: object = None) -> dict[str, GroundMotion]:
@@ -318,5 +326,5 @@ def known_motions(runs: xr.Dataset, motions: object = None) -> dict[str, GroundM
     if MOTION in runs:
         used = set(runs[MOTION].to_numpy().astype(str).ravel().tolist())
         names = [name for name in names if name in used]
-    found = unscaled_motions(runs.attrs, names, motions, store_of(runs), needed=False)
-    return {name: motion for name, motion in found.items() if motion is not None}
+    unscaled = unscaled_motions(runs.attrs, names, motions, store_of(runs), needed=False)
+    return {name: motion for name, motion in unscaled.items() if motion is not None}

@@ -27,10 +27,10 @@ class CasesOfJob:
     def __init__(self, job: SweepJob, change: Change | None = None) -> None:
         self.job = job
         self._change = change
-        axes = [(axis, each.tolist()) for axis, each in job.axes]
-        self._numbers = {axis.name: each for axis, each in job.axes if each.dtype.kind == "f"}
+        axes = [(axis, column.tolist()) for axis, column in job.axes]
+        self._numbers = {axis.name: column for axis, column in job.axes if column.dtype.kind == "f"}
         self._scale, self._start, self._of_scene = (
-            [(axis, each) for axis, each in axes if axis.changes in kinds]
+            [(axis, column) for axis, column in axes if axis.changes in kinds]
             for kinds in ((Changes.MOTION,), (Changes.START,), SYSTEM_AXES)
         )
         self._scenes: dict[tuple[Any, ...], tuple[Assembly, list[str]]] = {}
@@ -38,9 +38,9 @@ class CasesOfJob:
 
     def with_change(self, change: Change) -> "CasesOfJob":
         """Return the same cases with other plans; their parts are shared."""
-        other = CasesOfJob(self.job, change)
-        other._scenes = self._scenes
-        return other
+        changed = CasesOfJob(self.job, change)
+        changed._scenes = self._scenes
+        return changed
 
     def __len__(self) -> int:
         """Return the number of cases."""
@@ -48,11 +48,11 @@ class CasesOfJob:
 
     def scene_key(self, case: int) -> tuple[Any, ...]:
         """Return what cases of one scene have in common."""
-        return tuple(each[case] for _, each in self._of_scene)
+        return tuple(column[case] for _, column in self._of_scene)
 
     def start_key(self, case: int) -> tuple[float, ...]:
         """Return what cases of one start have in common, if starts differ."""
-        return tuple(each[case] for _, each in self._start)
+        return tuple(column[case] for _, column in self._start)
 
     def motion_key(self, case: int) -> tuple[int, float | None]:
         """Return what cases of one motion have in common, if it is not that of the scene."""
@@ -62,12 +62,12 @@ class CasesOfJob:
     def scene(self, case: int) -> tuple[Assembly, list[str]]:
         """Return the scene of a case, and the warnings of its assembly."""
         key = self.scene_key(case)
-        found = self._scenes.get(key)
-        if found is None:
-            values = {axis: each[case] for axis, each in self._of_scene}
+        assembled = self._scenes.get(key)
+        if assembled is None:
+            values = {axis: column[case] for axis, column in self._of_scene}
             with collected_warnings() as warned:
-                found = self._scenes[key] = (self.job.scene.assembled(values), warned)
-        return found
+                assembled = self._scenes[key] = (self.job.scene.assembled(values), warned)
+        return assembled
 
     @property
     def can_run_in_lanes(self) -> bool:
@@ -76,7 +76,9 @@ class CasesOfJob:
 
     def word_key(self, case: int) -> tuple[Any, ...]:
         """Return the differences between cases that are words or counts."""
-        return tuple(each[case] for axis, each in self._of_scene if axis.name not in self._numbers)
+        return tuple(
+            column[case] for axis, column in self._of_scene if axis.name not in self._numbers
+        )
 
     def _values_of(self, axis: Axis, values: list[Any], which: CaseIndices) -> Any:
         """Return the value of an axis in many cases, which agree where it is no number."""
@@ -85,7 +87,7 @@ class CasesOfJob:
 
     def scene_of_many(self, which: CaseIndices) -> tuple[Assembly, list[str]]:
         """Return the scene of many cases; the warnings are the same for all."""
-        values = {axis: self._values_of(axis, each, which) for axis, each in self._of_scene}
+        values = {axis: self._values_of(axis, column, which) for axis, column in self._of_scene}
         with collected_warnings() as warned:
             return self.job.scene.assembled(values), warned
 
@@ -107,8 +109,8 @@ class CasesOfJob:
         """Return the motion of a case only as numbers, which is cheaper."""
         motion = self.unscaled_motion(case)
         if motion is None or [axis.name for axis, _ in self._scale] != [SCALE]:
-            found = self.motion(case)
-            return None if found is None else found.si
+            case_motion = self.motion(case)
+            return None if case_motion is None else case_motion.si
         return scaled_components(motion.si, self._scale[0][1][case])
 
     def motion(self, case: int) -> GroundMotion | None:
@@ -128,13 +130,15 @@ class CasesOfJob:
     def plan(self, case: int) -> tuple[Assembly, list[str], Plan]:
         """Return the scene of a case, the warnings of its assembly, and the plan."""
         system, messages = self.scene(case)
-        start = {axis.parameter: each[case] for axis, each in self._start}
+        start = {axis.parameter: column[case] for axis, column in self._start}
         return system, messages, self._plan(system, start, self.motion(case))
 
     def plan_of_many(self, which: CaseIndices) -> tuple[Assembly, list[str], Plan]:
         """Return the same of many cases, with the motion of the first before it is scaled."""
         system, messages = self.scene_of_many(which)
-        start = {axis.parameter: self._values_of(axis, each, which) for axis, each in self._start}
+        start = {
+            axis.parameter: self._values_of(axis, column, which) for axis, column in self._start
+        }
         return system, messages, self._plan(system, start, self.unscaled_motion(int(which[0])))
 
     def _plan(

@@ -106,9 +106,9 @@ class CollectedResults:
             self._texts.setdefault(rows.texts[message[first]], len(self._texts))
         places = np.array([self._texts.get(text, NO_TEXT) for text in rows.texts])
         self._message[here] = places[message]
-        for kept, value in ((self._scalars, rows.scalars), (self._histories, rows.histories)):
+        for collected, value in ((self._scalars, rows.scalars), (self._histories, rows.histories)):
             for name, values in value.items():
-                _assign(kept, self._count, name, here, values[which])
+                _assign(collected, self._count, name, here, values[which])
 
     def rows(self) -> CaseResults:
         """Return the collected results."""
@@ -133,12 +133,12 @@ def run_cases(
             else:
                 remaining.difference_update(several.cases.tolist())
             yield several
-        for found in run_assembled_singly(cases, sorted(remaining), stopped, ready):
-            if isinstance(found, Failed):
-                faults[found.case] = found.problem
+        for outcome in run_assembled_singly(cases, sorted(remaining), stopped, ready):
+            if isinstance(outcome, Failed):
+                faults[outcome.case] = outcome.problem
             else:
-                remaining.discard(found.case)
-                yield found
+                remaining.discard(outcome.case)
+                yield outcome
     for case in sorted(remaining):
         if stopped():
             return
@@ -283,15 +283,15 @@ class _Collector(CollectedResults):
             row = value if np.ndim(value) else np.broadcast_to(value, np.shape(case))
             _assign(self._scalars, self._count, name, case, row)
 
-    def _put_histories(self, case: int, values: dict[str, AnyArray], kept: Histories) -> None:
+    def _put_histories(self, case: int, values: dict[str, AnyArray], histories: Histories) -> None:
         time = values[TIME[0]]
-        count = min(len(time), kept.count)
+        count = min(len(time), histories.count)
         # a run that ends between two times has its end as a time too
-        count -= int(time[count - 1] != (count - 1) * kept.step)
-        names = values if kept.names is None else kept.names
+        count -= int(time[count - 1] != (count - 1) * histories.step)
+        names = values if histories.names is None else histories.names
         for name in names:
             if name != TIME[0] and name in values and SCHEMA[name].dims in (TIME, POINT_TIME):
-                row = np.full((*values[name].shape[:-1], kept.count), np.nan)
+                row = np.full((*values[name].shape[:-1], histories.count), np.nan)
                 row[..., :count] = values[name][..., :count]
                 _assign(self._histories, self._count, name, case, row)
 

@@ -145,18 +145,20 @@ def _has_ended(content: bytes) -> bool:
 
 def _machine() -> list[str]:
     """Describe where process numbers mean the same: a machine since its start, or a container."""
-    found = [platform.node()]
+    identifiers = [platform.node()]
     for path in ("sys/kernel/random/boot_id", "self/ns/pid"):
         with suppress(OSError):
             place = _PROC / path
-            found.append(os.readlink(place) if place.is_symlink() else place.read_text().strip())
-    return found
+            identifiers.append(
+                os.readlink(place) if place.is_symlink() else place.read_text().strip()
+            )
+    return identifiers
 
 
 def _start_of_process(process: int) -> str | None:
     """Return the start of a process of this machine; None if there is none or it is unknown."""
     with suppress(OSError, IndexError):
         status = (_PROC / str(process) / "stat").read_text()
-        state, *rest = status.rpartition(")")[2].split()  # numbered from the third field on
-        return None if state == "Z" else rest[18]
+        state, *fields = status.rpartition(")")[2].split()  # numbered from the third field on
+        return None if state == "Z" else fields[18]
     return None

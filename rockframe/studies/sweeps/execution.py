@@ -113,7 +113,7 @@ def _make_bar(value: object, owner: str, unit: str) -> ProgressBar:
         msg = f"{owner}: progress=True needs tqdm (pip install 'rockframe[progress]')"
         raise ComponentError(msg) from problem
     kind: Any = auto.tqdm
-    in_a_notebook = any("notebook" in one.__module__ for one in kind.__mro__)
+    in_a_notebook = any("notebook" in base.__module__ for base in kind.__mro__)
     if value is None and not (in_a_notebook or sys.stderr.isatty()):
         return _NoBar()
     return _Bar(kind, owner, unit, _DELAY if value is None else 0.0)
@@ -136,9 +136,9 @@ def workers_of_executor(executor: Executor | None) -> int:
     if executor is None:
         return worker_count()
     for name in ("_max_workers", "num_workers"):  # of Python's own, of joblib and of mpi4py
-        found = getattr(executor, name, None)
-        if isinstance(found, int) and found > 0:
-            return found
+        workers = getattr(executor, name, None)
+        if isinstance(workers, int) and workers > 0:
+            return workers
     client: Any = getattr(executor, "_client", None)
     if hasattr(client, "nthreads"):  # dask; one that grows with the work may have none yet
         return max(1, sum(client.nthreads().values()))
@@ -186,12 +186,14 @@ def run_chunks(
             return True
         except BaseException as problem:
             stop.set()
-            for one in running:
-                one.cancel()
+            for future in running:
+                future.cancel()
             if not isinstance(problem, KeyboardInterrupt):
                 raise
-            done = {one for one in running if one.done() and not one.cancelled()}
-            _collect_results({one for one in done if one.exception() is None}, running, collect)
+            done = {future for future in running if future.done() and not future.cancelled()}
+            _collect_results(
+                {future for future in done if future.exception() is None}, running, collect
+            )
             return False
 
 
@@ -217,16 +219,16 @@ def _collect_results(
     running: dict[Future[CaseResults | None], Chunk],
     collect: Callable[[Chunk, CaseResults], None],
 ) -> None:
-    for one in done:
+    for future in done:
         try:
-            rows = one.result()
+            rows = future.result()
         except (KeyboardInterrupt, CancelledError):
             raise KeyboardInterrupt from None
         except RockframeError:
             raise
         except Exception as problem:
             raise _executor_error(problem) from problem
-        chunk = running.pop(one)
+        chunk = running.pop(future)
         if rows is not None:
             collect(chunk, rows)
 

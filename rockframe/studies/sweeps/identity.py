@@ -36,17 +36,17 @@ def description_of(value: object) -> Any:
             **_source_of_class(type(value)),
         }
     if is_dataclass(value) and not isinstance(value, type):
-        own = {
-            one.name: description_of(getattr(value, one.name))
-            for one in fields(value)
-            if one.compare
+        entries = {
+            field.name: description_of(getattr(value, field.name))
+            for field in fields(value)
+            if field.compare
         }
-        return {"kind": type(value).__name__, **own}
+        return {"kind": type(value).__name__, **entries}
     if isinstance(value, Mapping):
         items = cast("Mapping[Any, Any]", value).items()
-        return [[description_of(key), description_of(one)] for key, one in items]
+        return [[description_of(key), description_of(entry)] for key, entry in items]
     if isinstance(value, tuple | list):
-        return [description_of(one) for one in cast("list[Any]", value)]
+        return [description_of(entry) for entry in cast("list[Any]", value)]
     if callable(value):
         return _describe_function(value)
     msg = (
@@ -62,18 +62,18 @@ def digest_of(described: object) -> str:
     return hashlib.sha256(json.dumps(described).encode()).hexdigest()
 
 
-def difference(one: object, other: object) -> list[str]:
+def difference(first: object, second: object) -> list[str]:
     """Name the entries in which two descriptions differ, with nested ones in brackets."""
-    a, b = _named_entries(one), _named_entries(other)
-    found: list[str] = []
+    a, b = _named_entries(first), _named_entries(second)
+    names: list[str] = []
     for name in dict.fromkeys([*a, *b]):
         if name in a and name in b and a[name] == b[name]:
             continue
         inside = difference(a.get(name), b.get(name)) if name in a and name in b else []
-        found.append(f"{name} ({', '.join(inside)})" if inside else name)
-    if not found and list(a) != list(b):
+        names.append(f"{name} ({', '.join(inside)})" if inside else name)
+    if not names and list(a) != list(b):
         return ["in their order"]
-    return found
+    return names
 
 
 def _named_entries(described: object) -> dict[str, Any]:
@@ -84,7 +84,7 @@ def _named_entries(described: object) -> dict[str, Any]:
     if rows and all(isinstance(row, dict) and "name" in row for row in rows):
         return {row["name"]: row for row in rows}
     if rows and all(isinstance(row, list) and len(row) == 2 for row in rows):
-        return {str(name): one for name, one in rows}
+        return {str(name): value for name, value in rows}
     return {}
 
 
@@ -110,7 +110,8 @@ def _describe_code(code: CodeType | None) -> list[Any]:
     if code is None:
         return []
     constants = [
-        _describe_code(one) if isinstance(one, CodeType) else repr(one) for one in code.co_consts
+        _describe_code(constant) if isinstance(constant, CodeType) else repr(constant)
+        for constant in code.co_consts
     ]
     return [code.co_code.hex(), code.co_names, constants]
 
@@ -127,15 +128,15 @@ def _source_of_class(kind: type) -> dict[str, str]:
     The equations of a user's base are the classes, functions and constants beside its component.
     """
     texts: list[Any] = []
-    for one in kind.__mro__:
-        module = inspect.getmodule(one)
+    for base in kind.__mro__:
+        module = inspect.getmodule(base)
         if module is None or module.__name__.partition(".")[0] in (_PACKAGE, "builtins"):
             continue
-        texts.append(_describe_function(one))
-        for name, each in sorted(vars(module).items()):
-            if callable(each) and getattr(each, "__module__", None) == module.__name__:
-                texts.append(_describe_function(each))
+        texts.append(_describe_function(base))
+        for name, value in sorted(vars(module).items()):
+            if callable(value) and getattr(value, "__module__", None) == module.__name__:
+                texts.append(_describe_function(value))
             # those of a script or a notebook are many, and most do not belong to the base
-            elif isinstance(each, int | float | str) and module.__name__ != "__main__":
-                texts += [] if name.startswith("__") else [[name, each]]
+            elif isinstance(value, int | float | str) and module.__name__ != "__main__":
+                texts += [] if name.startswith("__") else [[name, value]]
     return {"written": digest_of(texts)} if texts else {}

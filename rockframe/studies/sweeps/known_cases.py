@@ -41,26 +41,26 @@ class KnownCases:
         if run is not None and len(run.status) == len(chunk.cases):
             return run
         source, number = self._locate(chunk)
-        whole = CollectedResults(len(chunk.cases))
+        merged = CollectedResults(len(chunk.cases))
         if run is not None:
-            whole.put_rows(source == _NOT_RUN, run)
-        for k, one in enumerate(self._sources):
-            of_chunk = number // one.stored.chunk
+            merged.put_rows(source == _NOT_RUN, run)
+        for k, known in enumerate(self._sources):
+            of_chunk = number // known.stored.chunk
             for old in np.unique(of_chunk[source == k]).tolist():
                 here = (source == k) & (of_chunk == old)
-                rows = one.stored.get(one.stored.chunk_at(old))
-                whole.put_rows(here, rows, number[here] - old * one.stored.chunk)
-        return whole.rows()
+                rows = known.stored.get(known.stored.chunk_at(old))
+                merged.put_rows(here, rows, number[here] - old * known.stored.chunk)
+        return merged.rows()
 
     def _locate(self, chunk: Chunk) -> tuple[AnyArray, AnyArray]:
         """Return which source has each case of a chunk, and the number of the case there."""
         places = self._grid.indices(chunk.cases)
         source = np.full(len(chunk.cases), _NOT_RUN)
         number = np.zeros(len(chunk.cases), dtype=np.int64)
-        for k, one in reversed([*enumerate(self._sources)]):
-            there = one.numbers(places)
-            source[there != _NOT_RUN] = k
-            number[there != _NOT_RUN] = there[there != _NOT_RUN]
+        for k, known in reversed([*enumerate(self._sources)]):
+            numbers = known.numbers(places)
+            source[numbers != _NOT_RUN] = k
+            number[numbers != _NOT_RUN] = numbers[numbers != _NOT_RUN]
         return source, number
 
 
@@ -70,9 +70,12 @@ class _Source:
     def __init__(self, study: Study, folder: Path) -> None:
         self.stored = Store.open(folder)
         description = self.stored.description()
-        own = json.loads(json.dumps(study.to_dict()))
+        requested = json.loads(json.dumps(study.to_dict()))
         differs = difference(
-            *({k: v for k, v in d.items() if k not in _MAY_DIFFER} for d in (description, own))
+            *(
+                {k: v for k, v in d.items() if k not in _MAY_DIFFER}
+                for d in (description, requested)
+            )
         )
         if differs:
             msg = (
@@ -96,24 +99,28 @@ class _Source:
                 f"{', '.join(kinds[1])}"
             )
             raise StudyError(msg)
-        digests = [[digest for _, digest in each["motions"]] for each in (description, own)]
+        digests = [
+            [digest for _, digest in described["motions"]] for described in (description, requested)
+        ]
         self._positions = {MOTION: _positions(digests[1], digests[0])}
-        there = {axis.name: axis.values.tolist() for axis in self._grid.axes}
+        stored_values = {axis.name: axis.values.tolist() for axis in self._grid.axes}
         for axis in study.grid.axes:
-            self._positions[axis.name] = _positions(axis.values.tolist(), there[axis.name])
+            self._positions[axis.name] = _positions(axis.values.tolist(), stored_values[axis.name])
 
     def numbers(self, places: Mapping[str, AnyArray]) -> AnyArray:
         """Return the numbers that cases have here, by their places in the other study."""
-        each = [self._positions[dim][places[dim]] for dim in self._grid.order]
-        found = np.ravel_multi_index([np.maximum(one, 0) for one in each], self._grid.shape)
-        found[np.any(np.array(each) == _NOT_RUN, axis=0)] = _NOT_RUN
-        for old in np.unique(found[found != _NOT_RUN] // self.stored.chunk).tolist():
+        positions = [self._positions[dim][places[dim]] for dim in self._grid.order]
+        numbers = np.ravel_multi_index(
+            [np.maximum(position, 0) for position in positions], self._grid.shape
+        )
+        numbers[np.any(np.array(positions) == _NOT_RUN, axis=0)] = _NOT_RUN
+        for old in np.unique(numbers[numbers != _NOT_RUN] // self.stored.chunk).tolist():
             if not self.stored.has(self.stored.chunk_at(old)):  # not yet run
-                found[found // self.stored.chunk == old] = _NOT_RUN
-        return found
+                numbers[numbers // self.stored.chunk == old] = _NOT_RUN
+        return numbers
 
 
-def _positions(wanted: list[Any], there: list[Any]) -> AnyArray:
+def _positions(values: list[Any], stored: list[Any]) -> AnyArray:
     """Return the positions of values among others."""
-    place = {one: k for k, one in enumerate(there)}
-    return np.array([place.get(one, _NOT_RUN) for one in wanted])
+    place = {value: k for k, value in enumerate(stored)}
+    return np.array([place.get(value, _NOT_RUN) for value in values])

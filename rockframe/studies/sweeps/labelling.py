@@ -72,12 +72,12 @@ def sweep_labels(study: Study) -> SweepLabels:
     return SweepLabels(grid, tuple(study.motions), study.histories, arguments.points, attributes)
 
 
-def sweep_dataset(labels: SweepLabels, found: Iterable[tuple[range, CaseResults]]) -> xr.Dataset:
+def sweep_dataset(labels: SweepLabels, results: Iterable[tuple[range, CaseResults]]) -> xr.Dataset:
     """Label the results."""
     grid = labels.grid
     collected = CollectedResults(grid.count)  # in the order of running, with gaps
-    for cases, each in found:
-        collected.put_rows(slice(cases.start, cases.stop), each)
+    for cases, part in results:
+        collected.put_rows(slice(cases.start, cases.stop), part)
     rows = collected.rows()
     few, message = merge_similar_texts(rows.texts, rows.message)
     gaps = np.full((grid.count, len(labels.points)), np.nan)
@@ -141,35 +141,37 @@ def with_coordinates(dataset: xr.Dataset, labels: SweepLabels, message: xr.Varia
     """Add the axes, and the messages of the cases."""
     dataset = dataset.assign_coords({**_coordinates(labels), MESSAGE: message})
     # the numbers of bodies, and the names of restrainers, that results are of
-    found: dict[str, Any] = {}
+    coordinates: dict[str, Any] = {}
     if (count := dataset.sizes.get(BODY[0])) is not None:
-        found[BODY[0]] = 1 + np.arange(count)
+        coordinates[BODY[0]] = 1 + np.arange(count)
     if (count := dataset.sizes.get(RESTRAINER[0])) is not None:
         names = json.loads(str(labels.attributes.get("restrainer_names", "[]")))
         numbers = [str(k + 1) for k in range(count)]
-        found[RESTRAINER[0]] = np.array(names if len(names) == count else numbers, dtype=object)
-    return without_fill_values(with_variables(dataset, found))
+        coordinates[RESTRAINER[0]] = np.array(
+            names if len(names) == count else numbers, dtype=object
+        )
+    return without_fill_values(with_variables(dataset, coordinates))
 
 
 def _coordinates(labels: SweepLabels) -> dict[str, xr.Variable]:
     grid = labels.grid
-    found: dict[str, xr.Variable] = {}
+    coordinates: dict[str, xr.Variable] = {}
     for axis in (*grid.axes, *grid.columns):
         words = axis.values.dtype.kind == "U"
         values = axis.values.astype(object) if words else axis.values
         dim = axis.name if axis in grid.axes else CASE
-        found[axis.name] = xr.Variable(dim, values, axis.attributes())
+        coordinates[axis.name] = xr.Variable(dim, values, axis.attributes())
     if grid.motion_column is not None:
         names = np.array(labels.motions, dtype=object)[grid.motion_column]
-        found[MOTION] = xr.Variable(CASE, names, SCHEMA[MOTION].attributes())
-    return found
+        coordinates[MOTION] = xr.Variable(CASE, names, SCHEMA[MOTION].attributes())
+    return coordinates
 
 
-def _driver_words(found: AnyArray) -> str:
+def _driver_words(drivers: AnyArray) -> str:
     """Say how cases were run, from a `Driver` for each; NaN for those without a result."""
-    words = SIDE_BY_SIDE if (found == Driver.IN_LANES).any() else ALONE
-    as_python = int((found == Driver.AS_PYTHON).sum())
+    words = SIDE_BY_SIDE if (drivers == Driver.IN_LANES).any() else ALONE
+    as_python = int((drivers == Driver.AS_PYTHON).sum())
     if not as_python:
         return words
-    which = "" if as_python == int(np.isfinite(found).sum()) else f" {as_python} of them"
+    which = "" if as_python == int(np.isfinite(drivers).sum()) else f" {as_python} of them"
     return f"{words},{which} in plain Python"

@@ -79,9 +79,9 @@ def _run_in_lanes(rows: Sequence[tuple[int, LaneScene, Motion | None]]) -> Itera
     """Run cases whose systems are of one kind, and give those without warnings."""
     cases, every_scene, every_motion = zip(*rows, strict=True)
     (scenes, scene_of), (motions, motion_of) = _distinct(every_scene), _distinct(every_motion)
-    found = integrate_lanes([scene.run for scene in scenes], motions, scene_of, motion_of)
+    outcomes = integrate_lanes([scene.run for scene in scenes], motions, scene_of, motion_of)
     for k, (case, scene) in enumerate(zip(cases, every_scene, strict=True)):
-        summary = found.summary(k, scene.run.start.substeps)
+        summary = outcomes.summary(k, scene.run.start.substeps)
         if has_no_cautions(scene.system, summary):
             yield Finished(case, scene.system, summary, scene.warnings)
 
@@ -89,7 +89,7 @@ def _run_in_lanes(rows: Sequence[tuple[int, LaneScene, Motion | None]]) -> Itera
 def _distinct(objects: Sequence[Any]) -> tuple[list[Any], CaseIndices]:
     """Return each of several objects once, and the place of each among these."""
     places: dict[int, int] = {}
-    place_of = np.array([places.setdefault(id(one), len(places)) for one in objects], np.intp)
+    place_of = np.array([places.setdefault(id(item), len(places)) for item in objects], np.intp)
     return [objects[k] for k in np.unique(place_of, return_index=True)[1]], place_of
 
 
@@ -123,8 +123,10 @@ def run_assembled_singly(
                 key = (cases.scene_key(case), cases.start_key(case), cases.length_key(case))
                 if key not in scenes:
                     scenes[key] = None  # unless it can be prepared
-                    found = prepare_lanes(*cases.plan(case))
-                    scenes[key] = found if found is not None and ready(found) else None
+                    lane_scene = prepare_lanes(*cases.plan(case))
+                    scenes[key] = (
+                        lane_scene if lane_scene is not None and ready(lane_scene) else None
+                    )
                 if (scene := scenes[key]) is not None:
                     moved = (id(cases.unscaled_motion(case)), cases.motion_key(case)[1])
                     if moved not in motions:
@@ -171,8 +173,8 @@ class FinishedGroup:
         """Return the indications of each verdict."""
         count = len(self.cases)
         columns = (
-            [each] * count if isinstance(each, bool) else values_by_case(each, count).tolist()
-            for each in vars(self.look).values()
+            [value] * count if isinstance(value, bool) else values_by_case(value, count).tolist()
+            for value in vars(self.look).values()
         )
         rows = zip(*columns, strict=True)
         return [(case, Look(*row)) for case, row in zip(self.cases.tolist(), rows, strict=True)]
@@ -212,34 +214,34 @@ def run_assembled_together(
         rows = np.concatenate([group.rows for group in groups])
         order = np.argsort(every, kind="stable")  # neighbours share their motion
         ran: list[CaseIndices] = []
-        found: list[Outcomes] = []
+        batches: list[Outcomes] = []
         for begin in range(0, len(order), BATCH_SIZE):
             if stopped():
                 return
             here = order[begin : begin + BATCH_SIZE]
             run, outcomes = _integrate_batch(cases, groups[0].one, every[here], rows[here])
             ran.append(here[run])
-            found.append(outcomes)
+            batches.append(outcomes)
         here = np.concatenate(ran)
         yield from _results_of_lanes(
-            cases, groups, group_of[here], every[here], join_outcomes(found)
+            cases, groups, group_of[here], every[here], join_outcomes(batches)
         )
 
 
 def _assemble_batch(cases: CasesOfJob, some: CaseIndices) -> _Batch:
     """Assemble the scenes of cases; give the row of each for lanes."""
     first = int(some[0])
-    several, one = prepare_lanes(*cases.plan_of_many(some)), prepare_lanes(*cases.plan(first))
-    if several is None or one is None:
+    several, single = prepare_lanes(*cases.plan_of_many(some)), prepare_lanes(*cases.plan(first))
+    if several is None or single is None:
         raise SingleCaseOnly
     rows = initial_rows(several.run.model, several.run.start, len(some))
-    if rows[0].tobytes() != initial_rows(one.run.model, one.run.start).tobytes():
+    if rows[0].tobytes() != initial_rows(single.run.model, single.run.start).tobytes():
         raise SingleCaseOnly
-    return _Batch(one, some, rows)
+    return _Batch(single, some, rows)
 
 
 def _integrate_batch(
-    cases: CasesOfJob, one: LaneScene, some: CaseIndices, rows: Any
+    cases: CasesOfJob, single: LaneScene, some: CaseIndices, rows: Any
 ) -> tuple[CaseIndices, Outcomes]:
     """Run cases whose motions are available; give which these are."""
     motions: list[Motion | None] = []
@@ -256,7 +258,7 @@ def _integrate_batch(
             places[key] = len(places)
         ran.append(k)
         motion_of.append(places[key])
-    run = LaneRun(one.run.model, one.run.start, rows)
+    run = LaneRun(single.run.model, single.run.start, rows)
     which = np.array(ran, dtype=np.intp)
     return which, integrate_lanes([run], motions, which, np.array(motion_of, dtype=np.intp))
 
@@ -281,9 +283,9 @@ def _results_of_lanes(
         def work(some: CaseIndices, substeps: int = substeps) -> FinishedGroup:
             return _group_result(cases, ran[some], outcomes.summary_of_many(some, substeps))
 
-        for some, found in run_by_branches(work, np.flatnonzero(way_of == k)):
+        for some, finished in run_by_branches(work, np.flatnonzero(way_of == k)):
             alone[some] = False
-            yield found
+            yield finished
     for k in np.flatnonzero(alone).tolist():
         try:
             system, messages = cases.scene(int(ran[k]))
@@ -307,7 +309,7 @@ def _group_result(cases: CasesOfJob, some: CaseIndices, summary: Summary) -> Fin
         raise SingleCaseOnly
     return FinishedGroup(
         some, summary.status, [*messages, *([STILL_MOVING] if moving else [])],
-        {name: each.values if isinstance(each, CaseArray) else each
-         for name, each in scalars.items()},
+        {name: value.values if isinstance(value, CaseArray) else value
+         for name, value in scalars.items()},
         look,
     )  # fmt: skip

@@ -69,11 +69,11 @@ def lazy_dataset(stored: Store) -> xr.Dataset:
 
 def block_lengths(grid: Grid, most: int) -> dict[str, int]:
     """Return the lengths of blocks of cases that follow one another in the order of running."""
-    found: dict[str, int] = {}
+    lengths: dict[str, int] = {}
     for dim in reversed(grid.order):
-        found[dim] = max(1, min(grid.sizes[dim], most))
+        lengths[dim] = max(1, min(grid.sizes[dim], most))
         most = most // grid.sizes[dim]
-    return found
+    return lengths
 
 
 class _Column(BackendArray):
@@ -94,14 +94,14 @@ class _Column(BackendArray):
     def _select(self, key: _Key) -> AnyArray:
         dims = len(self._grid.sizes)
         numbers = self._grid.case_numbers(key[:dims])
-        found = self._read_cases(numbers.ravel()).reshape((*numbers.shape, *self._beside))
-        for axis, one in reversed([*enumerate(key[dims:], start=numbers.ndim)]):
-            found = found[(*[slice(None)] * axis, one)]
-        return found
+        values = self._read_cases(numbers.ravel()).reshape((*numbers.shape, *self._beside))
+        for axis, index in reversed([*enumerate(key[dims:], start=numbers.ndim)]):
+            values = values[(*[slice(None)] * axis, index)]
+        return values
 
     def _read_cases(self, numbers: AnyArray) -> AnyArray:
         """Read cases by their numbers in the order of running."""
-        found = np.full(
+        column = np.full(
             (len(numbers), *self._beside), _FILL_VALUES.get(self._name, np.nan), self.dtype
         )
         of_chunk = numbers // self._stored.chunk
@@ -113,8 +113,8 @@ class _Column(BackendArray):
                 values = _values(_rows(self._stored, chunk), self._name)
                 if values is not None:
                     beside = map(slice, values.shape[1:])
-                    found[(places, *beside)] = values[numbers[places] - chunk.cases.start]
-        return found
+                    column[(places, *beside)] = values[numbers[places] - chunk.cases.start]
+        return column
 
 
 _FILL_VALUES: Final[Mapping[str, Any]] = {_STATUS: RunStatus.NOT_RUN, MESSAGE: NONE}

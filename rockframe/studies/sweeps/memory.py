@@ -39,7 +39,7 @@ def check_memory(
     numbers: Mapping[str, float], cases: int, remedies: str, *, owner: str
 ) -> list[str]:
     """Say how much memory cases need, and whether it is available."""
-    sizes = {what: _FLOAT * _COPY_FACTOR * each * cases for what, each in numbers.items()}
+    sizes = {what: _FLOAT * _COPY_FACTOR * count * cases for what, count in numbers.items()}
     needed, free = sum(sizes.values()), available_memory()
     parts = ", ".join(f"{what} {_size_words(size)}" for what, size in sizes.items())
     text = (
@@ -55,18 +55,18 @@ def check_memory(
 
 def available_memory() -> float:
     """Return what this process may still use; infinite if unknown [bytes]."""
-    found = [math.inf]
+    limits = [math.inf]
     with suppress(OSError, ValueError, IndexError):
-        (line,) = (one for one in _MEMINFO.read_text().splitlines() if "MemAvailable" in one)
-        found.append(1024.0 * float(line.split()[1]))
-    if len(found) == 1 and hasattr(os, "sysconf"):
+        (line,) = (row for row in _MEMINFO.read_text().splitlines() if "MemAvailable" in row)
+        limits.append(1024.0 * float(line.split()[1]))
+    if len(limits) == 1 and hasattr(os, "sysconf"):
         with suppress(OSError, ValueError):
-            found.append(float(os.sysconf("SC_PHYS_PAGES")) * os.sysconf("SC_PAGE_SIZE"))
-    for most, now, parts in _CGROUP_FILES:
+            limits.append(float(os.sysconf("SC_PHYS_PAGES")) * os.sysconf("SC_PAGE_SIZE"))
+    for most, usage, parts in _CGROUP_FILES:
         with suppress(OSError, ValueError):  # "max" where there is no limit
-            used = float(now.read_text()) - _reclaimable(parts)
-            found.append(max(float(most.read_text()) - used, 0.0))
-    return min(found)
+            used = float(usage.read_text()) - _reclaimable(parts)
+            limits.append(max(float(most.read_text()) - used, 0.0))
+    return min(limits)
 
 
 def _reclaimable(parts: Path) -> float:
@@ -86,7 +86,7 @@ def _size_words(size: float) -> str:
 
 
 def numbers_per_case(
-    arguments: RunRequest, kept: Histories | None, *, screened: bool
+    arguments: RunRequest, histories: Histories | None, *, screened: bool
 ) -> dict[str, float]:
     """Return how many numbers of each kind are kept for a case."""
     points = len(arguments.points)
@@ -94,10 +94,14 @@ def numbers_per_case(
     numbers = {"scalars": float(sum(not row.dims for row in every))}
     if points:
         numbers[f"peaks at {points} points"] = float(len(POINT_PEAKS) * points)
-    if kept is not None:
-        names = kept.names or [row.name for row in (*HISTORIES, *POINTS) if TIME[0] in row.dims]
+    if histories is not None:
+        names = histories.names or [
+            row.name for row in (*HISTORIES, *POINTS) if TIME[0] in row.dims
+        ]
         several = sum(points if SCHEMA[name].dims == POINT_TIME else 1 for name in names)
-        numbers[f"{several} histories of {kept.count} times"] = float(several * kept.count)
+        numbers[f"{several} histories of {histories.count} times"] = float(
+            several * histories.count
+        )
     return numbers
 
 

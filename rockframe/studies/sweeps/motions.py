@@ -80,33 +80,38 @@ def named_motions(value: object) -> dict[str, GroundMotion]:
         named = _split_pairs(with_string_keys(cast("Mapping[Any, Any]", value), owner=OWNER))
     elif is_iterable(value) and not isinstance(value, str):
         several = list(value)
-        pairs = (one.components if isinstance(one, HorizontalPair) else (one,) for one in several)
+        pairs = (
+            item.components if isinstance(item, HorizontalPair) else (item,) for item in several
+        )
         named = _distinct_names([motion for pair in pairs for motion in pair])
     else:
         named = {"": value}
-    wrong = [one for one in named.values() if not isinstance(one, GroundMotion)]
+    wrong = [motion for motion in named.values() if not isinstance(motion, GroundMotion)]
     if wrong or not named:
-        found = short_repr(wrong[0]) if wrong else "none"
-        msg = f"{OWNER}: motions must be a GroundMotion, or several, got {found}"
+        given = short_repr(wrong[0]) if wrong else "none"
+        msg = f"{OWNER}: motions must be a GroundMotion, or several, got {given}"
         raise ComponentError(msg)
     return named
 
 
 def _split_pairs(named: Mapping[str, Any]) -> dict[str, Any]:
     """Return motions by name; the name of a component follows that of its pair."""
-    found: dict[str, Any] = {}
-    for name, one in named.items():
-        if not isinstance(one, HorizontalPair):
-            found[name] = one
+    motions: dict[str, Any] = {}
+    for name, item in named.items():
+        if not isinstance(item, HorizontalPair):
+            motions[name] = item
             continue
-        directions = [str(motion.metadata.get("component", "")) for motion in one.components]
+        directions = [str(motion.metadata.get("component", "")) for motion in item.components]
         words = (
             directions
             if all(directions) and len(set(directions)) == len(directions)
             else ["first", "second"]
         )
-        found |= {f"{name} {word}": each for word, each in zip(words, one.components, strict=True)}
-    return found
+        motions |= {
+            f"{name} {word}": component
+            for word, component in zip(words, item.components, strict=True)
+        }
+    return motions
 
 
 def motion_number(requested: object, names: Sequence[str], *, owner: str) -> int:
@@ -137,9 +142,9 @@ def _distinct_names(motions: list[Any]) -> dict[str, Any]:
     """Name motions: by their scales those of one name, with a number those that remain alike."""
     names = [str(getattr(motion, "name", place)) for place, motion in enumerate(motions)]
     named: dict[str, Any] = {}
-    for own, motion in zip(names, motions, strict=True):
-        alone = names.count(own) == 1
-        plain = name = own if alone else display_name(own, getattr(motion, "history", ()))
+    for original, motion in zip(names, motions, strict=True):
+        alone = names.count(original) == 1
+        plain = name = original if alone else display_name(original, getattr(motion, "history", ()))
         count = 1
         while name in named:
             count += 1

@@ -69,13 +69,15 @@ def kept_histories(
     if not arguments.histories:
         return None
     named = [str(name) for name in outputs_as_list(outputs)]
-    names = tuple(dict.fromkeys(one for name in named for one in GROUPS.get(name, (name,))))
+    names = tuple(
+        dict.fromkeys(variable for name in named for variable in GROUPS.get(name, (name,)))
+    )
     wrong = [name for name in names if SCHEMA[name].dims not in (TIME, requests.POINT_TIME)]
     if wrong:
         msg = f"outputs: {', '.join(wrong)} are no histories, which a sweep could keep"
         raise StudyError(msg)
-    own = isinstance(scene, FunctionScene) and None in motions.values()
-    if own and (arguments.duration is None or arguments.output_step is None):
+    from_function = isinstance(scene, FunctionScene) and None in motions.values()
+    if from_function and (arguments.duration is None or arguments.output_step is None):
         msg = "histories of motions that the function makes need a duration and an output_step"
         raise StudyError(msg)
     step = arguments.output_step
@@ -135,12 +137,12 @@ def plan_study(
     cases: object,
     *,
     period: QuantityLike | None = None,
-    kept: bool | None = None,
+    stored: bool | None = None,
     **requested: Any,
 ) -> Study:
     """Check the arguments of a sweep.
 
-    `kept` tells whether there is a store, from which a result that is larger than the memory
+    `stored` tells whether there is a store, from which a result that is larger than the memory
     can be read lazily; None where the whole result is needed at once.
     """
     faults = Faults()
@@ -183,10 +185,12 @@ def plan_study(
         arguments = replace(arguments, output_step=histories.step)  # at the times that are kept
     numbers = numbers_per_case(arguments, histories, screened=screened)
     advice = (
-        LAZY_ADVICE if kept else memory_remedies(arguments, histories, may_be_kept=kept is False)
+        LAZY_ADVICE
+        if stored
+        else memory_remedies(arguments, histories, may_be_kept=stored is False)
     )
     too_large = check_memory(numbers, grid.count, advice, owner=OWNER)
-    if kept and not faults.found:
+    if stored and not faults.found:
         for text in too_large:
             warn(f"{OWNER}: {text}", SolverWarning)
     else:
@@ -209,7 +213,7 @@ def _read_grid(
         column = np.asarray(table.pop(MOTION)).tolist()
         of_case = faults.attempt(
             lambda: np.array(
-                [motion_number(one, motions, owner="cases") for one in column], np.intp
+                [motion_number(label, motions, owner="cases") for label in column], np.intp
             ),
             None,
         )
@@ -235,7 +239,7 @@ def _is_screening_cheaper(system: Assembly, motions: Iterable[GroundMotion | Non
     if not system.setting.steps_cost_most:
         return False
     return not isinstance(system.setting, SingleBodySetting) or any(
-        one is None or one.recipe is None for one in motions
+        motion is None or motion.recipe is None for motion in motions
     )
 
 
@@ -267,7 +271,7 @@ def _read_axes(
     scene: SweptScene, arguments: Mapping[str, object], faults: Faults, *, repeats: bool
 ) -> list[Axis]:
     """Read axes, or columns; note what is wrong."""
-    found: list[Axis] = []
+    axes: list[Axis] = []
     for name, values in arguments.items():
         fault = _name_fault(name)
         if fault:
@@ -276,10 +280,10 @@ def _read_axes(
         axis = faults.attempt(lambda name=name, values=values: scene.axis(name, values), None)
         if axis is None:
             continue
-        found.append(axis)
+        axes.append(axis)
         if not repeats or not len(axis.values):
             faults.found += faults_of_values(name, axis.values)
-    return found
+    return axes
 
 
 def _name_fault(name: object) -> str | None:

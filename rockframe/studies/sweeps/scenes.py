@@ -35,9 +35,9 @@ from rockframe.system.options import NUMERIC_OPTIONS, Coupling, Restraint, Rotat
 from rockframe.units import Measure, Unit, quantity
 
 START_AXES: Final = {
-    f"initial_{name}": (name, one.measure)
-    for name, one in InitialState.declared().items()
-    if one.measure is not None
+    f"initial_{name}": (name, field.measure)
+    for name, field in InitialState.declared().items()
+    if field.measure is not None
 }
 """Axes by their names: which parameter of an initial state each changes, and its kind."""
 FUNCTION_ADVICE: Final = "instead of the system give a function of the axis that returns a System"
@@ -72,11 +72,13 @@ class SystemScene:
         kind, _, parameter = name.rpartition(".")
         if parameter in _OPTIONS and kind in ("", _SYSTEM):
             return _option_axis(name, parameter, value)
-        found = self._parts_with(parameter, kind, self.assembly.parts.components)
-        found = found or self._parts_with(parameter, kind, self._parts())
-        if len(found) != 1:
-            raise StudyError(self._ambiguity_fault(name, parameter, [part for _, part, _ in found]))
-        ((slot, part, declared),) = found
+        matches = self._parts_with(parameter, kind, self.assembly.parts.components)
+        matches = matches or self._parts_with(parameter, kind, self._parts())
+        if len(matches) != 1:
+            raise StudyError(
+                self._ambiguity_fault(name, parameter, [part for _, part, _ in matches])
+            )
+        ((slot, part, declared),) = matches
         if not declared.single:
             msg = (
                 f"axis {name!r} is neither a number nor a word; give a function of the axes that "
@@ -97,12 +99,12 @@ class SystemScene:
 
     def faults(self, axes: Iterable[Axis]) -> list[str]:
         """Say which axes change the same parameter, or are alternatives to one another."""
-        found: list[str] = []
+        faults: list[str] = []
         seen: dict[tuple[str, str, str], str] = {}
         for axis in axes:
             what = (axis.changes, axis.slot, axis.parameter)
             if what in seen:
-                found.append(f"{seen[what]!r} and {axis.name!r} are the same parameter")
+                faults.append(f"{seen[what]!r} and {axis.name!r} are the same parameter")
             seen[what] = axis.name
         for slot, part in self._parts().items():
             values = {
@@ -113,14 +115,14 @@ class SystemScene:
                 heads = {way for way in alternative.ways if set(way) & set(values)}
                 if len(heads) > 1:
                     names = " and ".join(repr(values[name]) for name in ways)
-                    found.append(f"axes {names} stand for one another; give one of them")
+                    faults.append(f"axes {names} stand for one another; give one of them")
             if twice := part.too_many(values):
                 names = " and ".join(repr(values[name]) for name in twice)
-                found.append(f"axes {names} of {type(part).__name__} determine its size twice")
+                faults.append(f"axes {names} of {type(part).__name__} determine its size twice")
             behind = part.left_behind([*values])
             if behind:
-                found.append(_unchanged_parameter_fault(part, behind, values))
-        return found
+                faults.append(_unchanged_parameter_fault(part, behind, values))
+        return faults
 
     def with_parts_of(self, axes: Iterable[Axis]) -> "SystemScene":
         """Return the scene with the rigid ground as a part, where axes name its parameters."""
@@ -140,18 +142,18 @@ class SystemScene:
         for axis, value in values.items():
             if axis.changes is Changes.PART:
                 by_slot.setdefault(axis.slot, {})[axis.parameter] = value
-        changed = {slot: parts[slot].with_si(each) for slot, each in by_slot.items()}
-        other = {
+        changed = {slot: parts[slot].with_si(changes) for slot, changes in by_slot.items()}
+        changed_options = {
             axis.parameter: _option_value(axis.parameter, value)
             for axis, value in values.items()
             if axis.changes is Changes.OPTION
         }
         # options that no axis changes stay the same object, by which loads are shared
-        options = replace(options, **other) if other else options
-        found = assemble_parts(parts.replace(**changed, motion=None), options)
-        for caution in found.setting.cautions():
+        options = replace(options, **changed_options) if changed_options else options
+        assembly = assemble_parts(parts.replace(**changed, motion=None), options)
+        for caution in assembly.setting.cautions():
             warn(caution, ModelWarning)
-        return found
+        return assembly
 
     def system(self, values: Values) -> System:
         """Return the same as users have it."""
@@ -174,10 +176,10 @@ class SystemScene:
 
         A link first what results call it, in one word: "restrainer 1" is restrainer_1.
         """
-        own = [name for name, one in self.assembly.parts.named_links if one is part]
+        link_names = [name for name, link in self.assembly.parts.named_links if link is part]
         kinds = [kind for kind in type(part).__mro__ if issubclass(kind, Component)]
-        words = map(axis_name, own)
-        return [*words, *own, *(kind.__name__ for kind in kinds if kind != Component)]
+        words = map(axis_name, link_names)
+        return [*words, *link_names, *(kind.__name__ for kind in kinds if kind != Component)]
 
     def _ambiguity_fault(self, name: str, parameter: str, having: list[Component]) -> str:
         if having:
@@ -201,12 +203,12 @@ class SystemScene:
                 f"There are {', '.join(known)}"
             )
         known = [*MOTION_AXES, *_OPTIONS, *START_AXES]
-        known += [one for part in parts for one, each in part.varied().items() if each.single]
+        known += [label for part in parts for label, field in part.varied().items() if field.single]
         listed = ", ".join(dict.fromkeys(known))
         if parameter in SWEEP_ARGUMENT_NAMES:
             return f"axis {name!r} is an argument of the runs, alike in all; axes are {listed}"
         for part in parts:
-            if any(parameter in one.varied() for one in _inner_parts(part)):
+            if any(parameter in inner.varied() for inner in _inner_parts(part)):
                 return (
                     f"axis {name!r} is a parameter of a part of the {type(part).__name__}; "
                     + FUNCTION_ADVICE
@@ -268,11 +270,11 @@ class FunctionScene:
             else quantity(value, Measure("a quantity", Unit(axis.unit), ""))
             for axis, value in values.items()
         }
-        found = self.function(**arguments)
-        if not isinstance(found, System):
-            msg = f"{self.name} must return a System, got {short_repr(found)}"
+        system = self.function(**arguments)
+        if not isinstance(system, System):
+            msg = f"{self.name} must return a System, got {short_repr(system)}"
             raise StudyError(msg)
-        return found
+        return system
 
     @property
     def name(self) -> str:
@@ -322,10 +324,10 @@ def _unchanged_parameter_fault(
     kind = type(part).__name__
     left = " and ".join(behind)
     scaling = behind == ("inertia",)
-    other = f"a {kind} with shape_factor in the place of its inertia, " if scaling else ""
+    alternative = f"a {kind} with shape_factor in the place of its inertia, " if scaling else ""
     return (
         f"{axes} would leave {left} of this {kind} as given; give a function of the axes that "
-        f"returns a System, {other}or axes of {left} too"
+        f"returns a System, {alternative}or axes of {left} too"
     )
 
 
@@ -350,8 +352,8 @@ def _number_axis(
 
 def _option_axis(name: str, option: str, value: object) -> Axis:
     if option in NUMERIC_OPTIONS:
-        one = NUMERIC_OPTIONS[option]
-        return _number_axis(name, value, one.measure, one.description, Changes.OPTION, option)
+        entry = NUMERIC_OPTIONS[option]
+        return _number_axis(name, value, entry.measure, entry.description, Changes.OPTION, option)
     kind, words = _CHOICES[option]
     values = read_words(value, lambda word: checked_choice(kind, word, owner=OWNER, name=name))
     return Axis(name, values, None, words, Changes.OPTION, option)
@@ -360,32 +362,32 @@ def _option_axis(name: str, option: str, value: object) -> Axis:
 def _option_value(name: str, value: Any) -> Any:
     if name in _CHOICES:
         return _CHOICES[name][0](value)
-    one = NUMERIC_OPTIONS[name]
-    if not one.condition.holds(value):
-        msg = f"{name} must be {one.condition.words}, got {value!r} {one.measure.unit}"
+    entry = NUMERIC_OPTIONS[name]
+    if not entry.condition.holds(value):
+        msg = f"{name} must be {entry.condition.words}, got {value!r} {entry.measure.unit}"
         raise StudyError(msg)
     return value + 0.0  # no negative zero
 
 
 def _declared_values(
-    value: object, one: Declared[Any, Any], name: str
+    value: object, field: Declared[Any, Any], name: str
 ) -> tuple[AnyArray, str | None]:
-    if isinstance(one, Count):
+    if isinstance(field, Count):
         numbers = read_numbers(value, Measure("a whole number", Unit.ONE, "2"), name)
-        return np.array([one.read(number, OWNER) for number in numbers.tolist()]), str(Unit.ONE)
-    if isinstance(one, Flag):
-        return np.array([one.read(word, OWNER) for word in as_list(value)]), None
-    if one.measure is None:
-        return read_words(value, lambda word: one.read(word, OWNER)), None
-    return read_numbers(value, one.measure, name), str(one.measure.unit)
+        return np.array([field.read(number, OWNER) for number in numbers.tolist()]), str(Unit.ONE)
+    if isinstance(field, Flag):
+        return np.array([field.read(word, OWNER) for word in as_list(value)]), None
+    if field.measure is None:
+        return read_words(value, lambda word: field.read(word, OWNER)), None
+    return read_numbers(value, field.measure, name), str(field.measure.unit)
 
 
-def _warn_of_unusual_values(one: Declared[Any, Any], values: AnyArray, owner: str) -> None:
+def _warn_of_unusual_values(field: Declared[Any, Any], values: AnyArray, owner: str) -> None:
     """Warn of unusual values, as the part itself would."""
-    if isinstance(one, Choice | Text) or type(one).caution is Declared.caution:
+    if isinstance(field, Choice | Text) or type(field).caution is Declared.caution:
         return
     for value in values.tolist():
-        words = one.caution(value)
+        words = field.caution(value)
         if words is not None:
             warn(f"{OWNER}: {owner}: {words}", ModelWarning)
             return

@@ -215,8 +215,8 @@ class Store:
         """Store the results of a chunk."""
         arrays = {
             **dict(zip(_CHUNK_ARRAYS, (rows.status, rows.message), strict=True)),
-            **{f"{_SCALAR}{name}": each for name, each in sorted(rows.scalars.items())},
-            **{f"{_HISTORY}{name}": each for name, each in sorted(rows.histories.items())},
+            **{f"{_SCALAR}{name}": values for name, values in sorted(rows.scalars.items())},
+            **{f"{_HISTORY}{name}": values for name, values in sorted(rows.histories.items())},
         }
         try:
             self._file(chunk).parent.mkdir(exist_ok=True)
@@ -253,8 +253,8 @@ class Store:
         status, message = (arrays.pop(name) for name in _CHUNK_ARRAYS)
         scalars, histories = (
             {
-                name.removeprefix(kind): each
-                for name, each in arrays.items()
+                name.removeprefix(kind): values
+                for name, values in arrays.items()
                 if name.startswith(kind)
             }
             for kind in (_SCALAR, _HISTORY)
@@ -270,13 +270,13 @@ class Store:
     def contents(self) -> tuple[dict[str, tuple[int, ...]], int]:
         """Return the stored scalars and histories, with their shapes per case; count chunks."""
         files = [*self.folder.glob(f"{_FOLDERS if self.in_folders else ''}chunk-*.arrays")]
-        found: dict[str, tuple[int, ...]] = {}
+        shapes: dict[str, tuple[int, ...]] = {}
         for file in files:
             for name, shape in read_shapes(file).items():
                 plain = name.removeprefix(_SCALAR).removeprefix(_HISTORY)
                 # of unlike numbers of bodies or restrainers there is room for the most
-                found[plain] = tuple(map(max, found.get(plain, shape[1:]), shape[1:]))
-        return {name: found[name] for name in found if name not in _CHUNK_ARRAYS}, len(files)
+                shapes[plain] = tuple(map(max, shapes.get(plain, shape[1:]), shape[1:]))
+        return {name: shapes[name] for name in shapes if name not in _CHUNK_ARRAYS}, len(files)
 
     def labels(self) -> SweepLabels:
         """Read the labels of the study."""
@@ -290,24 +290,24 @@ class Store:
         )
         names = tuple(name for name, _ in described["motions"])
         grid = Grid(axes, columns, len(names), arrays.get(_COLUMN))
-        kept = described["histories"]
+        of_histories = described["histories"]
         histories = None
-        if kept is not None:
-            which = None if kept["names"] is None else tuple(kept["names"])
-            histories = Histories(which, kept["step"], kept["count"])
-        points = tuple(BodyPoint(**one) for one in described["points"])
+        if of_histories is not None:
+            which = None if of_histories["names"] is None else tuple(of_histories["names"])
+            histories = Histories(which, of_histories["step"], of_histories["count"])
+        points = tuple(BodyPoint(**point) for point in described["points"])
         return SweepLabels(grid, names, histories, points, described["attributes"])
 
     def motions(self) -> dict[str, GroundMotion | None]:
         """Read the motions of the study."""
         described, arrays = read_arrays(self.folder / _LABELS)
-        for k, (_, one) in enumerate(described["motions"]):
-            for component, held in _sampled_components(one).items():
+        for k, (_, description) in enumerate(described["motions"]):
+            for component, held in _sampled_components(description).items():
                 for what in held:
                     held[what] = arrays[f"{_MOTION}{k} {component} {what}"]
         return {
-            name: None if one is None else GroundMotion.from_dict(one)
-            for name, one in described["motions"]
+            name: None if description is None else GroundMotion.from_dict(description)
+            for name, description in described["motions"]
         }
 
     def _file(self, chunk: Chunk) -> Path:
@@ -342,7 +342,7 @@ def _create(path: Path, study: Study, chunk: int) -> None:
     described: dict[str, Any] = {
         "attributes": dict(labels.attributes),
         "histories": None if labels.histories is None else vars(labels.histories),
-        "points": [vars(one) for one in labels.points],
+        "points": [vars(point) for point in labels.points],
         "motions": [],  # in their order, in which cases are counted
     }
     for kind, axes in (("axes", labels.grid.axes), ("columns", labels.grid.columns)):
@@ -351,12 +351,12 @@ def _create(path: Path, study: Study, chunk: int) -> None:
     if labels.grid.motion_column is not None:
         arrays[_COLUMN] = labels.grid.motion_column
     for k, (name, motion) in enumerate(study.motions.items()):
-        one = None if motion is None else motion.to_dict(samples=True)
-        for component, held in _sampled_components(one).items():
+        description = None if motion is None else motion.to_dict(samples=True)
+        for component, held in _sampled_components(description).items():
             for what, values in held.items():
                 arrays[f"{_MOTION}{k} {component} {what}"] = np.array(values)
                 held[what] = None
-        described["motions"].append((name, one))
+        described["motions"].append((name, description))
     write_arrays(path / _LABELS, described, arrays)
     many = study.grid.count > MAX_FILES_PER_FOLDER * chunk
     head = {
@@ -377,14 +377,14 @@ def _word_values(axis: Axis) -> list[str] | None:
     return axis.values.tolist() if axis.values.dtype.kind == "U" else None
 
 
-def _sampled_components(one: Mapping[str, Any] | None) -> dict[str, dict[str, Any]]:
+def _sampled_components(description: Mapping[str, Any] | None) -> dict[str, dict[str, Any]]:
     """Return the components that a motion is described by, where it is described by samples.
 
     What a constructor makes is described by its arguments, and ``vertical`` may be one of them.
     """
-    if one is None or one["constructor"] is not None:
+    if description is None or description["constructor"] is not None:
         return {}
-    return {component: one[component] for component in _SAMPLED if one[component]}
+    return {component: description[component] for component in _SAMPLED if description[component]}
 
 
 def _read_head(path: Path) -> dict[str, Any]:
@@ -392,7 +392,7 @@ def _read_head(path: Path) -> dict[str, Any]:
     try:
         head: dict[str, Any] = json.loads(file.read_text(encoding="utf-8"))
         version, form = head["rockframe_version"], head["format"]
-        whole = {"study_sha256", "cases", "cases_of_a_chunk", "history", "study"} <= set(head)
+        is_complete = {"study_sha256", "cases", "cases_of_a_chunk", "history", "study"} <= set(head)
     except FileNotFoundError as problem:
         msg = f"{path}: found no study; expected a folder with {_STUDY}"
         raise StudyError(msg) from problem
@@ -412,7 +412,7 @@ def _read_head(path: Path) -> dict[str, Any]:
             "in another folder"
         )
         raise StudyError(msg)
-    if not whole:
+    if not is_complete:
         msg = f"{file}: damaged: entries are missing"
         raise StudyError(msg)
     return head

@@ -124,8 +124,10 @@ class Study:
         """Return all that the results depend on: every field, and some scenes of a function."""
         # the source of a function need not determine its scenes
         scenes = [
-            digest_of(description_of(one)) if isinstance(one, Assembly) else type(one).__name__
-            for one in self._inspected_scenes
+            digest_of(description_of(scene))
+            if isinstance(scene, Assembly)
+            else type(scene).__name__
+            for scene in self._inspected_scenes
         ]
         return {"rockframe_version": __version__, **description_of(self), "scenes": scenes}
 
@@ -135,7 +137,9 @@ class Study:
         if isinstance(self.scene, SystemScene):
             return self.scene.assembly.setting.link_names
         made = [
-            one.setting.link_names for one in self._inspected_scenes if isinstance(one, Assembly)
+            scene.setting.link_names
+            for scene in self._inspected_scenes
+            if isinstance(scene, Assembly)
         ]
         return made[0] if made and len(set(made)) == 1 else ()
 
@@ -146,16 +150,16 @@ class Study:
             return []
         count = self.grid.count
         spread = [int((k * _GOLDEN_RATIO) % 1.0 * count) for k in range(_INSPECTED_SCENES)]
-        found: list[Assembly | Exception] = []
+        scenes: list[Assembly | Exception] = []
         for case in sorted({*spread, count - 1}):
             axes = self.grid.values_of_cases(range(case, case + 1))
-            values = {axis: each.item() for axis, each in axes if axis.changes in SYSTEM_AXES}
+            values = {axis: value.item() for axis, value in axes if axis.changes in SYSTEM_AXES}
             try:
                 with collected_warnings():
-                    found.append(self.scene.assembled(values))
+                    scenes.append(self.scene.assembled(values))
             except Exception as problem:  # reported by the run of the case
-                found.append(problem)
-        return found
+                scenes.append(problem)
+        return scenes
 
     @cached_property
     def digest(self) -> str:
@@ -164,10 +168,10 @@ class Study:
 
     def time_of_case(self, *, as_python: bool) -> float:
         """Estimate the time of a case among others [s]."""
-        one = self._time_of_case()
+        alone = self._time_of_case()
         if as_python:
-            return one * _PYTHON_SLOWDOWN
-        return one if self.compile_timeout is None else one * LANE_TIME_RATIO
+            return alone * _PYTHON_SLOWDOWN
+        return alone if self.compile_timeout is None else alone * LANE_TIME_RATIO
 
     def chunk_size(self, workers: int, *, as_python: bool) -> int:
         """Return a chunk size that takes long enough and leaves work for all workers."""
@@ -185,12 +189,12 @@ class Study:
         )
         tolerance = self.arguments.accuracy.rtol
         if tolerance is None:
-            one = _RUN_OVERHEAD + intervals * _TIME_OF_FIXED_STEPS
+            duration = _RUN_OVERHEAD + intervals * _TIME_OF_FIXED_STEPS
         else:
-            one = (_RUN_OVERHEAD + intervals * _TIME_OF_ADAPTIVE_STEPS) * (
+            duration = (_RUN_OVERHEAD + intervals * _TIME_OF_ADAPTIVE_STEPS) * (
                 2e-8 / float(tolerance)
             ) ** 0.2
-        return one * (_SCREENING_RATIO if self.screened else 1.0)
+        return duration * (_SCREENING_RATIO if self.screened else 1.0)
 
 
 _CACHE_SIZE: Final = 16

@@ -162,8 +162,8 @@ def sweep(
     """
     named = axes is None or isinstance(axes, Mapping)  # pyright: ignore[reportUnnecessaryIsInstance]
     if not named:
-        found = f"axes must be a mapping of names to values, got {short_repr(axes)}"
-        msg = f"{found}; write for example axes={{'Block.mass': ['1 t', '2 t']}}"
+        fault = f"axes must be a mapping of names to values, got {short_repr(axes)}"
+        msg = f"{fault}; write for example axes={{'Block.mass': ['1 t', '2 t']}}"
         raise StudyError(msg)
     values = dict(axes or {})
     twice = sorted(set(values) & set(more_axes))
@@ -183,15 +183,15 @@ def sweep(
         outputs=outputs,
         points=points,
         overturning=overturning,
-        kept=store is not None,
+        stored=store is not None,
     )
     cache_study(study)
     with progress_bar(progress, owner=OWNER) as bar:
-        others = [known] if isinstance(known, PathLike) else checked_list(
+        sources = [known] if isinstance(known, PathLike) else checked_list(
             known, owner=OWNER, name="known", of="folders"
         )  # fmt: skip
         dataset, _ = run_study(
-            study, bar, store=store, executor=executor, chunk=chunk, known=others
+            study, bar, store=store, executor=executor, chunk=chunk, known=sources
         )
         return dataset
 
@@ -260,34 +260,36 @@ def run_study(
         as_python = _runs_as_python(study)
         chunk = study.chunk_size(workers, as_python=as_python)
     size = checked_integer(chunk, owner=OWNER, name="chunk", lowest=1, highest=_MAX_CHUNK)
-    _warn_of_long_study(study, workers, as_python=as_python, kept=store is not None)
+    _warn_of_long_study(study, workers, as_python=as_python, stored=store is not None)
     if store is None and known:
         msg = "known cases are copied into the store of the sweep; give store='a folder'"
         raise StudyError(msg)
-    others = KnownCases(study, map(read_folder, known))
+    known_cases = KnownCases(study, map(read_folder, known))
     if store is None:
         dataset, unfinished = _run_in_memory(study, size, executor, bar)
     else:
         dataset, unfinished = _run_with_store(
-            study, read_folder(store), size, executor, bar, others
+            study, read_folder(store), size, executor, bar, known_cases
         )
     if unfinished:
         warn(f"{OWNER}: interrupted; {unfinished}", SolverWarning)
     if not study.lazy:
         dataset = mark_not_screened(dataset) if study.screening_skipped else dataset
-        kept = study.histories
-        warn_of_missing_results(dataset, () if kept is None else kept.names or ())
+        histories = study.histories
+        warn_of_missing_results(dataset, () if histories is None else histories.names or ())
     return dataset, not unfinished
 
 
-def _warn_of_long_study(study: Study, workers: int, *, as_python: bool, kept: bool) -> None:
+def _warn_of_long_study(study: Study, workers: int, *, as_python: bool, stored: bool) -> None:
     """Warn of sweeps that take more than a day."""
     days = study.grid.count * study.time_of_case(as_python=as_python) / workers / _DAY
     if days > 1.0:
-        ways = "several jobs on it share the work" if kept else "with one a kill would not lose it"
+        ways = (
+            "several jobs on it share the work" if stored else "with one a kill would not lose it"
+        )
         warn(
             f"{OWNER}: {study.grid.count} cases take about {days:.2g} days with {workers} workers, "
-            f"by the lengths of the motions; {'the' if kept else 'there is no'} store: {ways}",
+            f"by the lengths of the motions; {'the' if stored else 'there is no'} store: {ways}",
             SolverWarning,
         )
 
@@ -298,8 +300,8 @@ def _runs_as_python(study: Study) -> bool:
         return True
     try:
         system, _, plan = CasesOfJob(study.job(range(1))).plan(0)
-        own = any(isinstance(part, OwnBase) for part in system.parts.structural())
-        if not own and not isinstance(system.setting, OwnScene):
+        has_own_base = any(isinstance(part, OwnBase) for part in system.parts.structural())
+        if not has_own_base and not isinstance(system.setting, OwnScene):
             return False
         trial = replace(plan.without_outputs(), duration=_TRIAL_SHARE * plan.duration)
         return compute_response(system, trial).trajectory.as_python
@@ -311,16 +313,18 @@ def _run_in_memory(
     study: Study, size: int, executor: Executor | None, bar: ProgressBar
 ) -> tuple[xr.Dataset, str]:
     """Return the results, and of an interrupted study how far it came."""
-    found: list[tuple[range, CaseResults]] = []
+    results: list[tuple[range, CaseResults]] = []
     bar.expect(study.grid.count)
 
-    def collect(one: Chunk, rows: CaseResults) -> None:
-        found.append((one.cases, rows))
-        bar.update(len(one.cases))
+    def collect(chunk: Chunk, rows: CaseResults) -> None:
+        results.append((chunk.cases, rows))
+        bar.update(len(chunk.cases))
 
     chunks = chunks_of(study.grid.count, size)
-    completed = run_chunks(chunks, lambda one: study.job(one.cases), collect, executor)
-    dataset = sweep_dataset(sweep_labels(study), sorted(found, key=lambda one: one[0].start))
+    completed = run_chunks(chunks, lambda chunk: study.job(chunk.cases), collect, executor)
+    dataset = sweep_dataset(
+        sweep_labels(study), sorted(results, key=lambda result: result[0].start)
+    )
     return dataset, "" if completed else cases_verdict(dataset)
 
 
@@ -330,33 +334,35 @@ def _run_with_store(
     size: int,
     executor: Executor | None,
     bar: ProgressBar,
-    others: KnownCases,
+    known_cases: KnownCases,
 ) -> tuple[xr.Dataset, str]:
     """Return the results, and of an interrupted study how far it came."""
     stored = Store.open_or_create(folder, study, size)
     every = stored.chunks()
-    missing = [one for one in every if not stored.has(one)]
+    missing = [chunk for chunk in every if not stored.has(chunk)]
     some = len(missing) < len(every)
     if missing:
         stored.check_writable()
     if some:  # before hours of work
         for _ in stored.results():
             pass
-    done = study.grid.count - sum(len(one.cases) for one in missing)
+    done = study.grid.count - sum(len(chunk.cases) for chunk in missing)
     bar.expect(study.grid.count, done)
 
     claims = Claims(folder)
 
-    def collect(one: Chunk, rows: CaseResults) -> None:
-        stored.put(one, others.merge(one, rows))
-        claims.release(one.number)
-        bar.update(len(one.cases))
+    def collect(chunk: Chunk, rows: CaseResults) -> None:
+        stored.put(chunk, known_cases.merge(chunk, rows))
+        claims.release(chunk.number)
+        bar.update(len(chunk.cases))
 
-    claimed = _claimed_chunks(staggered(missing) if some else missing, stored, others, claims, bar)
+    claimed = _claimed_chunks(
+        staggered(missing) if some else missing, stored, known_cases, claims, bar
+    )
     try:
         completed = run_chunks(
             claimed,
-            lambda one: study.job(others.missing_cases(one)),
+            lambda chunk: study.job(known_cases.missing_cases(chunk)),
             collect,
             executor,
             claims.renew,
@@ -368,12 +374,12 @@ def _run_with_store(
     dataset = stored_dataset(stored, lazy=study.lazy)
     if completed or not study.lazy:
         return dataset, "" if completed else cases_verdict(dataset)
-    run = sum(len(one.cases) for one in every if stored.has(one))
+    run = sum(len(chunk.cases) for chunk in every if stored.has(chunk))
     return dataset, f"{run} of {study.grid.count} cases have been run, and are kept"
 
 
 def _claimed_chunks(
-    missing: list[Chunk], stored: Store, others: KnownCases, claims: Claims, bar: ProgressBar
+    missing: list[Chunk], stored: Store, known_cases: KnownCases, claims: Claims, bar: ProgressBar
 ) -> Iterator[Chunk | None]:
     """Return the chunks that no other job has, as they are claimed; None while others have them.
 
@@ -385,17 +391,17 @@ def _claimed_chunks(
             yield None
             continue
         checked, later = time.monotonic(), list[Chunk]()
-        for one in missing:
-            if not stored.has(one) and not len(others.missing_cases(one)):
-                stored.put(one, others.merge(one, None))
-            claimed = not stored.has(one) and claims.take(one.number)
-            if stored.has(one):  # another job has run it, maybe a moment ago
-                claims.release(one.number)
-                bar.update(len(one.cases))
+        for chunk in missing:
+            if not stored.has(chunk) and not len(known_cases.missing_cases(chunk)):
+                stored.put(chunk, known_cases.merge(chunk, None))
+            claimed = not stored.has(chunk) and claims.take(chunk.number)
+            if stored.has(chunk):  # another job has run it, maybe a moment ago
+                claims.release(chunk.number)
+                bar.update(len(chunk.cases))
             elif claimed:
-                yield one
+                yield chunk
             else:
-                later.append(one)
+                later.append(chunk)
         missing = later
 
 

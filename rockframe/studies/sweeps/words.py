@@ -30,8 +30,8 @@ _NUMBER: Final = re.compile(r"(?<![\w.])[-+]?\d+(?:\.\d+)?(?:e[-+]?\d+)?(?![\w.]
 
 def cases_verdict(dataset: xr.Dataset) -> str:
     """Describe the outcomes of the cases of a dataset; for a whole result as in its attribute."""
-    text, whole = str(dataset.attrs.get("verdict", "")), dataset.attrs.get(CASE_COUNT)
-    if whole is None or "status" not in dataset:
+    text, total = str(dataset.attrs.get("verdict", "")), dataset.attrs.get(CASE_COUNT)
+    if total is None or "status" not in dataset:
         return text
     status = dataset["status"]
     count = status.size
@@ -39,41 +39,43 @@ def cases_verdict(dataset: xr.Dataset) -> str:
         if MESSAGE not in dataset or dataset[MESSAGE].dims != status.dims:  # such as a mean
             return text
         count = int(status.notnull().sum())  # `where` and `reindex` leave gaps
-    if count == whole:  # a lazily read dataset has no verdict before
+    if count == total:  # a lazily read dataset has no verdict before
         return text or whole_verdict(dataset)
-    some = f"{count} of the {whole} cases of the sweep"
-    return cases_sentence(dataset, f"Of {some if count < whole else f'{count} cases'}")
+    some = f"{count} of the {total} cases of the sweep"
+    return cases_sentence(dataset, f"Of {some if count < total else f'{count} cases'}")
 
 
 def whole_verdict(dataset: xr.Dataset) -> str:
     """Describe the outcomes of all cases of a sweep, in words that stay true for a part of it."""
     count = dataset["status"].size
-    these = "Of 1 case" if count == 1 else f"Of all {count} cases"
-    return cases_sentence(dataset, f"{these} of the sweep")
+    subject = "Of 1 case" if count == 1 else f"Of all {count} cases"
+    return cases_sentence(dataset, f"{subject} of the sweep")
 
 
-def cases_sentence(runs: xr.Dataset, these: str) -> str:
+def cases_sentence(runs: xr.Dataset, subject: str) -> str:
     """Describe the outcomes of cases in one sentence, counted in parts that fit in memory."""
-    found, farthest = Counter[str](), 0.0
+    counts, farthest = Counter[str](), 0.0
     for part in _stored_parts(runs):
         slips = slips_of_cases(part)
         farthest = slips.max(initial=farthest, where=slips > MIN_REPORTED_SLIP)
-        found.update(_counts(part, slips))
-    text = f"{these} {found['overturned']} overturned and {found['stood']} did not"
-    if found["would slide"] + found["would hold"]:
-        text += f"; {found['would slide']} would slide and {found['would hold']} would not"
-    if found["slid"]:
-        text += f"; {found['slid']} slid, by {farthest:.3g} m at most"
-    if found["broke"]:
-        text += f"; in {found['broke']} a restrainer broke"
-    missing = found["cases"] - found["not run"] - found["overturned"] - found["stood"]
+        counts.update(_counts(part, slips))
+    text = f"{subject} {counts['overturned']} overturned and {counts['stood']} did not"
+    if counts["would slide"] + counts["would hold"]:
+        text += f"; {counts['would slide']} would slide and {counts['would hold']} would not"
+    if counts["slid"]:
+        text += f"; {counts['slid']} slid, by {farthest:.3g} m at most"
+    if counts["broke"]:
+        text += f"; in {counts['broke']} a restrainer broke"
+    missing = counts["cases"] - counts["not run"] - counts["overturned"] - counts["stood"]
     if missing:
         text += f"; {missing} have no result"
-    if found["not run"]:
-        text += f"; {found['not run']} have not been run"
-    if found["screened"]:
-        again = f"{found[REPEATED]} near a change of the verdict were run again with adaptive steps"
-        text += f"; {again}, which changed {found[VERDICT_CHANGED]}"
+    if counts["not run"]:
+        text += f"; {counts['not run']} have not been run"
+    if counts["screened"]:
+        again = (
+            f"{counts[REPEATED]} near a change of the verdict were run again with adaptive steps"
+        )
+        text += f"; {again}, which changed {counts[VERDICT_CHANGED]}"
     return f"{text}."
 
 
@@ -93,11 +95,11 @@ def _counts(runs: xr.Dataset, slips: AnyArray) -> dict[str, int]:
         which |= {"screened": runs[REPEATED].notnull()} | {
             n: runs[n] == 1.0 for n in SCREENING_VARIABLES
         }
-    found = {name: int(np.count_nonzero(some)) for name, some in which.items()}
+    counts = {name: int(np.count_nonzero(some)) for name, some in which.items()}
     if "would_slide" in runs:
         slides = count_slides(runs["would_slide"].to_numpy())
-        found |= dict(zip(("would slide", "would hold"), slides, strict=True))
-    return found | {"cases": int(np.count_nonzero(~np.isnan(status)))}
+        counts |= dict(zip(("would slide", "would hold"), slides, strict=True))
+    return counts | {"cases": int(np.count_nonzero(~np.isnan(status)))}
 
 
 def _stored_parts(runs: xr.Dataset) -> Iterator[xr.Dataset]:
@@ -115,9 +117,9 @@ def _stored_parts(runs: xr.Dataset) -> Iterator[xr.Dataset]:
 def slips_of_cases(runs: xr.Dataset) -> AnyArray:
     """Return the largest slip of each case, over all bodies [m]."""
     most = np.full(runs["status"].shape, np.nan)
-    for found in (runs[name] for name in PEAK_SLIPS if name in runs):
-        others = [dim for dim in found.dims if dim not in runs["status"].dims]
-        most = np.fmax(most, found.max(others).to_numpy())
+    for slips in (runs[name] for name in PEAK_SLIPS if name in runs):
+        other_dims = [dim for dim in slips.dims if dim not in runs["status"].dims]
+        most = np.fmax(most, slips.max(other_dims).to_numpy())
     return most
 
 
@@ -145,8 +147,8 @@ def warn_of_missing_results(dataset: xr.Dataset, histories: Iterable[str]) -> No
         (~missing & (message != NONE), ModelWarning, "have a result to be careful with"),
     ):
         if which.any():
-            text, those = _most_frequent(message[which].tolist())
-            reason = "" if text == NONE else f"; message of {those} of them: {text}"
+            text, number = _most_frequent(message[which].tolist())
+            reason = "" if text == NONE else f"; message of {number} of them: {text}"
             count = f"{int(which.sum())} of {len(status)} cases"
             warn(f"{OWNER}: {count} {words} (status, message){reason}", kind)
     absent = [name for name in histories if name not in dataset]
@@ -160,7 +162,7 @@ def _most_frequent(texts: Sequence[str]) -> tuple[str, int]:
     alike: dict[tuple[str, ...], Counter[str]] = {}
     for text, count in Counter(texts).items():
         alike.setdefault(tuple(_NUMBER.split(text)), Counter())[text] = count
-    words, counts = max(alike.items(), key=lambda one: one[1].total())
+    words, counts = max(alike.items(), key=lambda item: item[1].total())
     return _text_with_ranges(words, counts), counts.total()
 
 
@@ -171,7 +173,7 @@ def merge_similar_texts(
     alike: dict[tuple[str, ...], list[int]] = {}
     for place, text in enumerate(texts):
         alike.setdefault(tuple(_NUMBER.split(text)), []).append(place)
-    found: dict[str, int] = {}
+    merged: dict[str, int] = {}
     places = np.empty(len(texts), dtype=message.dtype)
     one_for = {
         place: _text_with_ranges(words, [texts[k] for k in several])
@@ -180,12 +182,14 @@ def merge_similar_texts(
         for place in several
     }
     for place, text in enumerate(texts):
-        places[place] = found.setdefault(one_for.get(place, text), len(found))
-    return tuple(found), places[message]
+        places[place] = merged.setdefault(one_for.get(place, text), len(merged))
+    return tuple(merged), places[message]
 
 
 def _text_with_ranges(words: Sequence[str], texts: Iterable[str]) -> str:
     columns: Any = zip(*(_NUMBER.findall(text) for text in texts), strict=True)
     ranges = [sorted(set(column), key=float) for column in columns]
-    spans = [each[0] if len(each) == 1 else f"{each[0]} to {each[-1]}" for each in ranges]
+    spans = [
+        numbers[0] if len(numbers) == 1 else f"{numbers[0]} to {numbers[-1]}" for numbers in ranges
+    ]
     return words[0] + "".join(map("".join, zip(spans, words[1:], strict=True)))
