@@ -6,7 +6,7 @@ argument is a vector of the numbers of the tuple.
 
 from collections.abc import Callable, Iterator
 from functools import cache, cached_property
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, cast
 
 import numpy as np
 
@@ -127,16 +127,22 @@ def bind(
 ) -> tuple[BoundFunction, ...]:
     """Bind functions to the tuple that is their first argument.
 
-    Functions that are `rarely_called` may run as plain Python. If the last element of the tuple is
-    an array, all of them share one copy of it.
+    Functions that are `rarely_called` may run as plain Python. If there is an array in the tuple,
+    all of them share one copy of it.
     """
-    structure = structure_of(bundle)
-    if isinstance(bundle, tuple) and isinstance(bundle[-1], np.ndarray):
-        bundle = type(bundle)(*bundle[:-1], bundle[-1].copy())  # type: ignore[call-arg]
+    structure, bundle = structure_of(bundle), _with_own_arrays(bundle)
     return tuple(
         BoundFunction(_bound_source(one, structure, False, rarely_called), bundle, fallback_for)
         for one in functions
     )
+
+
+def _with_own_arrays(value: Any) -> Any:
+    """Return a tuple with copies of the arrays in it and in the tuples in it."""
+    if isinstance(value, tuple):
+        kind = type(cast("tuple[Any, ...]", value))
+        return kind(*map(_with_own_arrays, cast("tuple[Any, ...]", value)))
+    return value.copy() if isinstance(value, np.ndarray) else value
 
 
 def bind_in_lanes(function: Callable[..., Any], bundle: Any) -> BoundFunction:

@@ -5,8 +5,10 @@ contains every result of the operation on numbers inside them. A comparison of b
 if it is true for all numbers inside them.
 """
 
-from collections.abc import Sequence
+from collections.abc import Generator, Sequence
+from contextlib import contextmanager
 from operator import mul
+from threading import RLock
 from typing import Any, Final, TypeAlias
 
 from flint import arb, ctx
@@ -25,9 +27,17 @@ UNIT: Final[Ball] = ZERO.union(ONE)
 WITHIN_ONE: Final[Ball] = arb(0, 1)
 
 
-def working_precision(bits: int) -> Any:
-    """Return a context in which the middles of balls have a number of bits."""
-    return ctx.workprec(bits)
+_precision_lock: Final = RLock()
+
+
+@contextmanager
+def working_precision(bits: int) -> Generator[None]:
+    """Set how many bits the middles of balls have in this block, which one thread runs at a time.
+
+    python-flint has one precision for all threads.
+    """
+    with _precision_lock, ctx.workprec(bits):
+        yield
 
 
 def bits() -> int:

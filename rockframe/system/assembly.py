@@ -253,9 +253,9 @@ class Assembly:
         """The scene's numbers in SI units."""
         return self.scene.make_setting(self.parts, self.options)
 
-    @cached_property
+    @property
     def model(self) -> ContactModel:
-        """The scene's equations, ready for the integrator, which does not change them."""
+        """The scene's equations, ready for the integrator; each thread has its own."""
         return self.setting.compile()
 
     @cached_property

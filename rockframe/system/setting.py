@@ -7,6 +7,7 @@ from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 from textwrap import wrap
+from threading import local
 from typing import TYPE_CHECKING, ClassVar, Final, NamedTuple, cast
 
 from rockframe.case_arrays import maximum
@@ -284,12 +285,19 @@ class Setting(ABC):
         """Return the equations; :meth:`compile` sets the limits of the rotation for a slope."""
 
     @cached_property
-    def _model(self) -> ContactModel:
-        return replace(self.contact_model(), rotation_limits=self.overturning_angles)
+    def _models(self) -> local:
+        return local()
 
     def compile(self) -> ContactModel:
-        """Return the equations, ready for the integrator, which does not change them."""
-        return self._model
+        """Return the equations, ready for the integrator.
+
+        Each thread has its own, as an array of the equations may hold a workspace.
+        """
+        found: ContactModel | None = getattr(self._models, "of_thread", None)
+        if found is None:
+            found = replace(self.contact_model(), rotation_limits=self.overturning_angles)
+            self._models.of_thread = found
+        return found
 
 
 _WIDTH: Final = 100

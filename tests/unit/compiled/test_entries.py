@@ -173,6 +173,29 @@ def test_one_compiled_function_serves_all_bound_ones():
     assert len([routine for routine in call_all._routines.values() if routine]) == 1
 
 
+class Noted(NamedTuple):
+    number: float
+    notes: Vector
+
+
+class Around(NamedTuple):
+    noted: Noted
+
+
+@kernel
+def note(around: Around, x: float) -> float:
+    around.noted.notes[0] += x
+    return around.noted.notes[0]
+
+
+def test_functions_bound_to_one_tuple_share_no_array_inside_it():
+    around = Around(Noted(1.0, np.zeros(1)))
+    (one,), (other,) = bind((note,), around), bind((note,), around)
+    assert one.call(2.0, np.zeros(2)) == 2.0
+    assert other.call(3.0, np.zeros(2)) == 3.0
+    assert around.noted.notes[0] == 0.0
+
+
 @kernel
 def import_bound(pair: Pair, x: float, out: Vector) -> float:
     from math import floor
