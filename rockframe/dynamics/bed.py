@@ -155,8 +155,7 @@ class Bed(Base, BedNumbers):
         start, end = self.bearing_part(contact, ends)
         v0 = interpolated(ends.v_left, ends.v_right, start)
         v1 = interpolated(ends.v_left, ends.v_right, end)
-        p0 = self.stiffness * interpolated(ends.u_left, ends.u_right, start) - self.damping * v0
-        p1 = self.stiffness * interpolated(ends.u_left, ends.u_right, end) - self.damping * v1
+        p0, p1 = self.pressure(start, ends), self.pressure(end, ends)
         l0 = interpolated(line.left_lever, line.right_lever, start)
         l1 = interpolated(line.left_lever, line.right_lever, end)
         length = self.width * (end - start)

@@ -30,7 +30,14 @@ from rockframe.solve.evaluation import (
     evaluate_slope,
 )
 from rockframe.solve.march import march_by_tolerance, march_fixed, march_fixed_by_rates
-from rockframe.solve.workspace import Pieces, Progress, StepTable, UnpackedMode, Workspace
+from rockframe.solve.workspace import (
+    Pieces,
+    Progress,
+    StepArrays,
+    StepTable,
+    UnpackedMode,
+    Workspace,
+)
 
 
 @kernel
@@ -95,8 +102,9 @@ class BoundEquations(NamedTuple):
             self.slope, self.powers, self.guards, self.coordinate_count, self.variable_count,
             self.guard_count, self.numbers,
         )  # fmt: skip
+        arrays = StepArrays(w.ends, w.stages, w.works, w.reference, w.limits, w.ground)
         return self.march.call(
-            called, unpacked, trial, pieces, progress, steps, w.of_steps(), self.numbers
+            called, unpacked, trial, pieces, progress, steps, arrays, self.numbers
         )
 
 

@@ -54,6 +54,7 @@ from rockframe.solve.workspace import (
     ROW_HEADER,
     STATE_ERRORS,
     EventTable,
+    Output,
     Pieces,
     Progress,
     Status,
@@ -362,7 +363,7 @@ def integrate(
         with python_time.measured(equations, clock):
             result = advance(
                 equations, run.tolerance, memory, pieces, progress,
-                rows.output(tables.steps), tables.events, workspace,
+                Output(rows.state, rows.mode, rows.work, tables.steps), tables.events, workspace,
             )  # fmt: skip
         if result not in (at.TABLE_FULL, at.PAUSED):
             break

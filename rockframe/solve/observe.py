@@ -23,7 +23,7 @@ from rockframe.solve.bookkeeping import ROUNDING, SAMPLE_TOLERANCE
 from rockframe.solve.equations import evaluate_columns, evaluate_energies
 from rockframe.solve.evaluation import evaluate_slope
 from rockframe.solve.trajectory import Events, Steps, Trajectory
-from rockframe.solve.workspace import ROW_HEADER, Output, Pieces, StepTable
+from rockframe.solve.workspace import ROW_HEADER, Pieces
 
 MANY_ROWS: Final = 500
 """Number of rows without slopes from which compiling the slope pays."""
@@ -50,10 +50,6 @@ class OutputRows:
         if rows:
             self.state[0], self.mode[0] = state, mode
             counters[at.OUTPUTS] = 1
-
-    def output(self, steps: StepTable) -> Output:
-        """Return the arrays that the steps fill."""
-        return Output(self.state, self.mode, self.work, steps)
 
     def expect_in_steps(self, pieces: Pieces, interval: float) -> None:
         """Leave out what the table of steps will hold: output times that are samples."""
@@ -276,12 +272,15 @@ def _observe(
     out: Matrix, exact: bool = False, samples: Integers = NO_SAMPLES,
     at_samples: Matrix = NO_COLUMNS,
 ) -> None:  # fmt: skip
+    system = model.system
     slope_function = _system_function(
-        model.system, evaluate_slope, rarely_called=exact or len(codes) < MANY_ROWS
+        system, evaluate_slope, rarely_called=exact or len(codes) < MANY_ROWS
     )
+    size, slopes = system.coordinates(), system.coordinates() + system.variables()
+    sizes = size + slopes, slopes + POWERS, memory.shape[1], len(model.columns)
     observe_rows(
-        slope_function, _system_function(model.system, evaluate_columns), int(exact), values, codes,
-        memory, requested, samples, _row_workspace(model, memory), out, at_samples,
+        slope_function, _system_function(system, evaluate_columns), int(exact), values, codes,
+        memory, requested, samples, RowWorkspace(*map(np.zeros, sizes)), out, at_samples,
     )  # fmt: skip
 
 
@@ -336,13 +335,6 @@ def observe_run(
     )  # fmt: skip
     along = _named(model, [model.columns[i] for i in chosen], out)
     return along, _named(model, model.columns, at_samples)
-
-
-def _row_workspace(model: ContactModel, memory: Matrix) -> RowWorkspace:
-    size, variables = model.system.coordinates(), model.system.variables()
-    slopes = size + variables
-    sizes = size + slopes, slopes + POWERS, memory.shape[1], len(model.columns)
-    return RowWorkspace(*(np.zeros(size) for size in sizes))
 
 
 def _named(model: ContactModel, columns: Sequence[Column], out: Matrix) -> dict[str, Vector]:

@@ -224,13 +224,6 @@ class Workspace(NamedTuple):
     ground: Vector  # coefficients of the ground acceleration in the present interval
     scratch: Vector  # scratch for a few numbers that the system gives
 
-    @inlined
-    def of_steps(self) -> StepArrays:
-        """Return those arrays that the loop of steps reads and writes."""
-        return StepArrays(
-            self.ends, self.stages, self.works, self.reference, self.limits, self.ground
-        )
-
 
 LEFT_LIMIT: Final = 0
 RIGHT_LIMIT: Final = 1
