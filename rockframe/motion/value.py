@@ -7,6 +7,8 @@ from enum import StrEnum
 from types import MappingProxyType
 from typing import Any, Final, TypeVar
 
+import numpy as np
+
 from rockframe.arguments import checked_text
 from rockframe.errors import ComponentError, short_repr
 from rockframe.motion.display import display_name, motion_html
@@ -75,7 +77,10 @@ class MotionValue(Immutable):
         history: tuple[str, ...] = (),
         recipe: Mapping[str, Any] | None = None,
     ) -> None:
-        entries: dict[str, Any] = dict(metadata or {})
+        entries: dict[str, Any] = {
+            key: value.item() if isinstance(value, np.integer | np.floating) else value
+            for key, value in dict(metadata or {}).items()
+        }
         for key, value in entries.items():
             if isinstance(value, bool) or not isinstance(value, str | int | float):
                 msg = (

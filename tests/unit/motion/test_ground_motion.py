@@ -357,6 +357,14 @@ def test_metadata_are_strings_and_numbers(value):
         GroundMotion(motion().si, metadata={"key": value})
 
 
+@pytest.mark.parametrize("value", [np.int64(30), np.float32(30.5), np.float64(30.5)])
+def test_numbers_of_arrays_are_metadata(value):
+    """As taken from a table."""
+    record = GroundMotion(motion().si, metadata={"azimuth": value})
+    assert record.metadata["azimuth"] == value
+    assert GroundMotion.from_dataset(record.to_dataset()) == record
+
+
 @pytest.mark.parametrize(
     ("arguments", "words"),
     [
