@@ -44,7 +44,7 @@ def accelerations_to_si(value: object, *, owner: str, name: str) -> Array:
         return _scaled(value.values, _unit_factor(unit, owner, name, udunits=True), owner, name)
     if _is_quantity(value):
         argument = cast("Any", value)
-        factor = to_si(type(argument)(1.0, argument.units), ACCELERATION, owner=owner, name=name)
+        factor = to_si(type(argument)(1, argument.units), ACCELERATION, owner=owner, name=name)
         return _scaled(argument.magnitude, factor, owner, name)
     if _has_unit(value):
         check_attached_unit(value[0], value[1], owner=owner, name=name)
@@ -74,7 +74,7 @@ def times_to_si(value: object, *, owner: str, name: str) -> Array:
         values = value.values
     elif _is_quantity(value):
         argument = cast("Any", value)
-        factor = to_si(type(argument)(1.0, argument.units), TIME, owner=owner, name=name)
+        factor = to_si(type(argument)(1, argument.units), TIME, owner=owner, name=name)
         values = argument.magnitude
     elif _has_unit(value):
         check_attached_unit(value[0], value[1], owner=owner, name=name)

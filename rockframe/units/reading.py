@@ -124,7 +124,7 @@ def check_attached_unit(values: object, unit: str, *, owner: str, name: str) -> 
     units: Any = pint.get_application_registry()
     try:  # powers as UDUNITS writes them
         both = [
-            units.Quantity(1.0, re.sub(r"(?<=[A-Za-z])(?=-?\d)", "^", u)) for u in (attached, unit)
+            units.Quantity(1, re.sub(r"(?<=[A-Za-z])(?=-?\d)", "^", u)) for u in (attached, unit)
         ]
         same = bool(both[0].is_compatible_with(both[1]) and both[0] == both[1])
     except Exception:  # pint raises many unrelated types
@@ -163,7 +163,7 @@ def _check_mask(number: Any, *, owner: str, name: str) -> None:
         raise ComponentError(msg)
 
 
-def _float(number: Real) -> float:
+def _float(number: Real | Decimal) -> float:
     """Convert a number to a float; one beyond its range becomes infinite."""
     try:
         return float(number)
@@ -176,12 +176,12 @@ def _si_magnitude(value: Any, unit: str) -> Any:
     number = value.magnitude
     if getattr(number, "ndim", None) == 0:  # other registries may make arrays of single numbers
         number = number.item()
-    if not isinstance(number, int | float):
+    if not isinstance(number, Real | Decimal):
         return value.m_as(unit)
-    size = float(type(value)(1.0, value.units).m_as(unit))
+    size = float(type(value)(1, value.units).m_as(unit))
     rounded = float(f"{size:.15g}")  # a foot of 0.30479999999999996 m is 0.3048 m
     short = len(repr(rounded)) <= _MAX_FACTOR_LENGTH
-    return _decimal_product(float(number), rounded if short else size)
+    return _decimal_product(_float(number), rounded if short else size)
 
 
 def _decimal_product(number: float, factor: float) -> float:
@@ -311,7 +311,7 @@ def _pair_as_text(value: object) -> object:
 def _check_kind(
     argument: Quantity, value: object, measure: Measure, *, owner: str, name: str
 ) -> None:
-    reference = type(argument)(1.0, "" if measure.unit == Unit.ONE else str(measure.unit))
+    reference = type(argument)(1, "" if measure.unit == Unit.ONE else str(measure.unit))
     try:
         same_kind = argument.is_compatible_with(reference) and _root_units(argument) == _root_units(
             reference
@@ -335,7 +335,7 @@ def _root_units(value: Any) -> dict[str, float]:
     # For pint the radian is dimensionless, so that a ratio would pass for an angle and rad/s for
     # Hz (a factor of 2 pi); the root units differ. They are those of one unit, as a huge value
     # would overflow.
-    one: Any = type(value)(1.0, value.units)
+    one: Any = type(value)(1, value.units)
     return {unit: float(power) for unit, power in one.to_root_units().unit_items()}
 
 

@@ -110,7 +110,7 @@ _MISREAD_UNITS: Final = (
         "'gal' is the gallon; the galileo (cm/s^2) is written 'Gal'",
     ),
     (r"\bnp\.", None, "a NumPy number was written with its type; write float(...) of it"),
-    (r"[A-Za-z]\d", None, "powers need '^', as in 'm/s^2'"),
+    (r"[A-Za-z]-?\d", None, "powers need '^', as in 'm/s^2'"),
 )
 AMBIGUOUS: Final = (
     # pint reads these without an error, but rarely as they were meant

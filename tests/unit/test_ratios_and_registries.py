@@ -5,6 +5,7 @@ import math
 import os
 import subprocess
 import sys
+from decimal import Decimal
 from fractions import Fraction
 
 import numpy as np
@@ -52,6 +53,13 @@ def test_a_ratio_may_be_a_quantity_of_any_registry():
         for magnitude in (20, 20.0, np.float64(20.0), np.array(20.0)):
             quantity = registry.Quantity(magnitude, "")
             assert make_pads(frequency_ratio=quantity).si.frequency_ratio == 20.0
+
+
+@pytest.mark.parametrize("kind", [Decimal, Fraction])
+def test_registries_may_have_other_numbers_than_floats(kind):
+    registry = pint.UnitRegistry(non_int_type=kind)
+    block = make_block(width=registry.Quantity("2.5 ft"), shape_factor=registry.Quantity("2.5"))
+    assert (block.si.width, block.si.shape_factor) == (0.762, 2.5)
 
 
 @pytest.mark.parametrize(

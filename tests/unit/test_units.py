@@ -385,6 +385,11 @@ def test_tower_of_powers_is_refused_quickly():
     assert worker.exitcode == 7
 
 
+def test_a_negative_power_without_its_sign_is_explained():
+    """As UDUNITS writes it."""
+    assert "powers need '^'" in refusal(make_block, width="1 J N-1")
+
+
 @pytest.mark.parametrize("text", ["1e3 A", "2.5e6 s"])
 def test_exponent_notation_is_not_reported_as_missing_power_sign(text):
     assert "powers need" not in refusal(make_block, width=text)

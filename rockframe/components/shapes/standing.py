@@ -88,7 +88,7 @@ def read_points(value: object, *, owner: str, name: str) -> Array:
     )
     if isinstance(value, pint.Quantity):
         whole: Any = value
-        factor = to_si(type(whole)(1.0, whole.units), LENGTH, owner=owner, name=name)
+        factor = to_si(type(whole)(1, whole.units), LENGTH, owner=owner, name=name)
         return _point_array(whole.magnitude, factor, message)
     if isinstance(value, str | Mapping) or not is_iterable(value):
         msg = f"{message}; got {short_repr(value)}"
