@@ -2,8 +2,9 @@
 A rocking cabinet, moving
 =========================
 
-``rf.plot.player`` makes a page that plays a run: the cabinet to scale above the traces of its
-rotation and of the ground. The page is drawn by the browser; it is some 15 kB large.
+``rf.plot.player`` makes a page that plays a run: the cabinet to scale, above the histories of its
+rotation and of the ground acceleration. The browser draws the page from the numbers; it is some 15
+kB large.
 """
 
 import rockframe as rf
@@ -14,7 +15,7 @@ run = rf.System(cabinet).simulate(pulse, free_vibration="2 s")
 print(run.attrs["verdict"])
 
 # %%
-# Press "Play", or draw the pointer over the traces; in a notebook the same appears.
+# Press "Play", or move the pointer over the histories; a notebook shows the same.
 # ``run.rockframe.player("cabinet.html")`` writes it into a file, and
 # ``rf.plot.animation(run).save("cabinet.gif")`` makes a film of pictures.
 

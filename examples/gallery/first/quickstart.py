@@ -2,7 +2,8 @@
 A six-storey frame under an earthquake
 ======================================
 
-Parts, a motion, a run, a verdict, a figure: the quick start (:doc:`/guide/quickstart`).
+The script of the quick start (:doc:`/guide/quickstart`): parts, a motion, a run, its verdict and
+its figure.
 """
 
 import rockframe as rf

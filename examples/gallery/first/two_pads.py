@@ -2,8 +2,8 @@
 A tower on two pads, from the soft to the stiff
 ===============================================
 
-The same tower under the same pulse. The stiffer the pads, the nearer it comes to a block on rigid
-ground, Housner's.
+The same tower under the same pulse. The stiffer the pads are, the closer the response is to that of
+a block on rigid ground (Housner).
 """
 
 import rockframe as rf

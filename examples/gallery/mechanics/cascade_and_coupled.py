@@ -2,8 +2,8 @@
 Cascade and coupled
 ===================
 
-Pads on a cap on soil, computed in two ways: at once, and in the paper's two stages, Eq. (20), where
-nothing of what the block does comes back to the soil.
+Pads on a cap on soil, computed by the coupled equations and in the paper's two stages, Eq. (20), in
+which the block has no effect on the soil.
 """
 
 import rockframe as rf

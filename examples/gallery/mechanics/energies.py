@@ -2,7 +2,7 @@
 Where the energy goes
 =====================
 
-Every run keeps account of its energies, and says how well they balance.
+Every run computes its energies, and states how well they balance.
 """
 
 import matplotlib.pyplot as plt

@@ -2,8 +2,8 @@
 A squat block that bounces
 ==========================
 
-A corner that lands hard on a stiff pad is thrown back: for some moments neither corner bears. The
-paper asks to avoid that state; rockframe computes it.
+A corner that lands hard on a stiff pad bounces, so that for some moments neither corner is in
+contact. The paper says that this state should be avoided; rockframe computes it.
 """
 
 import rockframe as rf

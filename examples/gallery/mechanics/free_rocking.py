@@ -2,8 +2,8 @@
 Free rocking, and Housner's closed form
 =======================================
 
-A block is let go from half its overturning angle. Each impact takes a share of its speed; for small
-rotations the peaks follow one after the other in closed form (Housner 1963,
+A block is released from half its overturning angle. Each impact reduces its speed by the same
+factor; for small rotations the peaks have a closed form (Housner 1963,
 :doc:`/theory/rigid_ground`).
 """
 

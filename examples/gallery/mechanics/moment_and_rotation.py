@@ -2,8 +2,8 @@
 Moment over rotation
 ====================
 
-A tower held at a rotation, on what it may stand on. No time passes: this is the quasi-static answer
-of :py:meth:`rockframe.System.moment_rotation`.
+The moment that holds a tower at a rotation, on each base, by
+:py:meth:`rockframe.System.moment_rotation`. This is quasi-static: no time passes.
 """
 
 import matplotlib.pyplot as plt

@@ -2,8 +2,8 @@
 Rocking in the plane of rotation and rate
 =========================================
 
-Free motion from several initial rates. Inside, curves spiral to rest, with a jump at each impact;
-outside the line between them the block falls.
+Free motion from several initial rates. Within the boundary curves spiral to rest, with a jump at
+each impact; outside of it the block overturns.
 """
 
 import matplotlib.pyplot as plt

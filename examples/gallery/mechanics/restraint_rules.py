@@ -2,9 +2,9 @@
 Which point is held: three rules of restraint
 =============================================
 
-On pads the model needs to know which point of the base does not move sideways. The rule hardly
-matters for a tall tower, and is seen for a squat block; :doc:`/theory/impact_and_restraint` tells
-them apart.
+On pads one point of the base is held horizontally, and a rule chooses it. The rule hardly matters
+for a tall tower; its effect on a squat block is visible. The rules are described in
+:doc:`/theory/impact_and_restraint`.
 """
 
 import rockframe as rf

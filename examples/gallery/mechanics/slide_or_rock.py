@@ -2,9 +2,9 @@
 Rest, slide, rock, or both
 ==========================
 
-How a block of t = b/h = 0.25 answers a ground that starts to accelerate by A g, by its coefficient
-of friction. Colours are runs; the lines are the boundaries in closed form: a block slides where the
-friction is below A and t, and rocks without a slip where it is above (A + 4 A t² + 3 t) /
+The response of a block of t = b/h = 0.25 to a ground that starts to accelerate by A g, for any
+coefficient of friction. Colours are runs; lines are the boundaries in closed form: a block slides
+where the friction is below A and t, and rocks without slip where it is above (A + 4 A t² + 3 t) /
 (4 + t² + 3 A t).
 """
 

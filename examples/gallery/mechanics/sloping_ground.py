@@ -2,8 +2,8 @@
 On sloping ground
 =================
 
-A block on pads on level ground and on ground that rises by two and four degrees to the right, under
-the same pulse. It stands on what is left of its overturning angle on the lower side.
+A block on pads, on level ground and on ground that rises by two and four degrees to the right,
+under the same pulse. The steeper the ground is, the smaller is the overturning angle downhill.
 """
 
 import rockframe as rf

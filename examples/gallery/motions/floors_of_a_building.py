@@ -2,8 +2,8 @@
 On the floors of a building
 ===========================
 
-The same earthquake on the ground and on the floors of six storeys, as spectra: a building shakes
-what stands in it in its own rhythm (:doc:`/theory/floor_motion`).
+Spectra of one earthquake on the ground and on the floors of six storeys: a building amplifies the
+motion at its own periods (:doc:`/theory/floor_motion`).
 """
 
 import matplotlib.pyplot as plt

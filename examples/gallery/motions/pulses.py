@@ -2,7 +2,7 @@
 Pulses, and what they do to a block
 ===================================
 
-Five pulses of the same peak velocity, and the same block under each of them.
+Five pulses of the same peak velocity, and the response of the same block to each of them.
 """
 
 import matplotlib.pyplot as plt

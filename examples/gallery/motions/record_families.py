@@ -2,8 +2,8 @@
 Motions of each family
 ======================
 
-A far earthquake that was recorded, a near one, a distant large one, a small one next door, and a
-pulse: what they look like, and what there is in them for a block.
+A recorded earthquake at some distance, a near one, a distant large one, a small one at a short
+distance, and a pulse, with what each of them means for a block.
 """
 
 import matplotlib.pyplot as plt

@@ -3,8 +3,8 @@ A motion matched to the spectrum of a code
 ==========================================
 
 Scaling keeps the peaks and troughs of a spectrum; wavelets added at the right times fill them
-(:doc:`/theory/spectral_matching`). What becomes of the motion: the accelerations keep their
-build-up, and the ground comes to rest where it did. Grey: the periods that were matched.
+(:doc:`/theory/spectral_matching`). The accelerations grow over time as before, and the ground comes
+to rest at the same place. The matched periods are grey.
 """
 
 import warnings

@@ -2,7 +2,7 @@
 Motions that fit the spectrum of a code
 =======================================
 
-Of forty motions the ten whose spectra, scaled, come closest to Eurocode 8 on the average.
+The ten of forty motions whose scaled spectra are closest to Eurocode 8 on average.
 """
 
 import rockframe as rf

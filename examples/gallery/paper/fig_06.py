@@ -2,9 +2,8 @@
 Figure 6: the excitation
 ========================
 
-Eq. (17), one sine of the acceleration of gravity. "For 0 to 1 s", says the text; after it the
-ground stands still, and has moved: a pulse of acceleration of one sign after the other leaves
-velocity zero and a displacement.
+Eq. (17), one sine with the amplitude of gravity, from 0 to 1 s. After the pulse the ground is at
+rest, at another place: its velocity is zero again, its displacement is not.
 """
 
 import matplotlib.pyplot as plt

@@ -2,8 +2,8 @@
 Figure 12: R = 5 m, pads of frequency ratio 40
 ==============================================
 
-Blocks of medium size on stiff pads, the nearest to rigid ground of this size. Brown lines: the
-rotation at which a corner leaves its pad; crosses: the block overturns.
+Blocks of medium size on stiff pads, which for this size are closest to rigid ground. Brown lines:
+the rotation at which a corner leaves its pad; crosses: the block overturns.
 """
 
 import parametric_study

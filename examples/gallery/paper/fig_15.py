@@ -2,8 +2,8 @@
 Figure 15: R = 10 m, pads of frequency ratio 40
 ===============================================
 
-Large blocks on stiff pads: of the three sizes the one that overturns least. Brown lines: the
-rotation at which a corner leaves its pad; crosses: the block overturns.
+Large blocks on stiff pads, which overturn least of the three sizes. Brown lines: the rotation at
+which a corner leaves its pad; crosses: the block overturns.
 """
 
 import parametric_study

@@ -2,8 +2,8 @@
 Figure 19: the three-storey frame let go
 ========================================
 
-The frame of three storeys is tilted by 0.10 rad on its pads and let go, on soils from 3 to 12 MPa.
-The cascade of Eq. (20) cannot know the soil here, whose stage stays at rest.
+The three-storey frame is tilted by 0.10 rad on its pads and released, on soils from 3 to 12 MPa.
+The soil has no influence in the cascade of Eq. (20), since its first stage stays at rest.
 """
 
 import free_response

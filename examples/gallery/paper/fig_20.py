@@ -2,8 +2,8 @@
 Figure 20: the six-storey frame let go
 ======================================
 
-The frame of six storeys is tilted by 0.10 rad on its pads and let go, on soils from 3 to 12 MPa.
-The cascade of Eq. (20) cannot know the soil here, whose stage stays at rest.
+The six-storey frame is tilted by 0.10 rad on its pads and released, on soils from 3 to 12 MPa. The
+soil has no influence in the cascade of Eq. (20), since its first stage stays at rest.
 """
 
 import free_response

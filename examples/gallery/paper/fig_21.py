@@ -2,8 +2,8 @@
 Figure 21: the record TCU128
 ============================
 
-Chi-Chi, 1999, component N, from 30 to 60 s: time history and the spectrum of its acceleration.
-The text does not say which component it takes; this is the one that comes first in the databases.
+Chi-Chi, 1999, component N, from 30 to 60 s: the time history and its spectrum. The text does not
+say which component it uses; this one comes first in the databases.
 """
 
 import matplotlib.pyplot as plt

@@ -2,9 +2,10 @@
 Figure 22: rotation of the frames under TCU128
 ==============================================
 
-The text: three storeys respond far less than six; stiffer pads reduce the response; six storeys on
-pads of frequency ratio 20 overturn, all other cases stand. Here no case overturns under the record
-as distributed; :doc:`/validation_frames` tells at which scales and with which caps they do.
+The paper states that three storeys respond far less than six, that stiffer pads reduce the
+response, and that of all cases only six storeys on pads of frequency ratio 20 overturn. Here no
+case overturns under the record as distributed; :doc:`/validation_frames` states at which scales and
+with which caps they do.
 """
 
 import numpy as np

@@ -2,9 +2,9 @@
 Figure 23: vertical displacement of the frames under TCU128
 ===========================================================
 
-The text: stiffer pads reduce the vertical displacement. Here they do so for three storeys, coupled.
-Six storeys rise more on stiffer pads, coupled, as more of their rocking is then uplift; by cascade
-they rise most on those in the middle.
+The paper states that stiffer pads reduce the vertical displacement. Here this holds for three
+storeys by the coupled equations. By these, six storeys rise more on stiffer pads, since uplift is
+then a larger part of their rocking; by cascade they rise most on pads of medium stiffness.
 """
 
 import shaken

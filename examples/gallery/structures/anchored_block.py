@@ -2,12 +2,12 @@
 An anchored block that falls
 ============================
 
-Equipment is anchored so that it stays. Makris and Zhang found that anchors which break may bring
-down what would have stood by itself: a block with p = 2.14 rad/s and theta = 0.349, under one sine
-of six times its frequency parameter that starts as the block uplifts. Free it stands pulses of up
-to 3.6 g. Anchored at both corners with a strength of its own weight, which is reached at a tenth of
-theta, it falls at 1 g: anchors break, and the block rocks back at the wrong instant. Beyond theta
-it may come back while the pulse lasts, so that it falls if it is beyond theta long after it.
+Makris and Zhang found that anchors which break may overturn a block that would remain standing
+without them. The block has p = 2.14 rad/s and theta = 0.349; the pulse is one sine of six times p
+that starts as the block uplifts. Without anchors the block withstands pulses of up to 3.6 g.
+Anchored at both corners with a strength of its own weight, which is reached at a tenth of theta, it
+overturns at 1 g: the anchors break, and the block rocks back at the wrong instant. Beyond theta it
+may come back while the pulse lasts; it has overturned if it is beyond theta long after the pulse.
 """
 
 import math

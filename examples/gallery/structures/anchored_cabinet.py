@@ -2,10 +2,11 @@
 A cabinet: does it need anchors?
 ================================
 
-An electrical cabinet of 400 kg on an upper floor, whose motion is taken for one sine of 2 Hz. Does
-it need anchors, and how strong must they be? Brittle anchors at both edges of its base, of a
-growing strength, under a growing floor: weak ones break as it lifts, and it falls no later than a
-free one, or sooner. Anchors that hold it have to bear more than its weight.
+An electrical cabinet of 400 kg stands on an upper floor, whose motion is one sine of 2 Hz. Does it
+need anchors, and how strong must they be? The figure is for brittle anchors at both edges of its
+base, of increasing strength, under an increasing motion. Weak anchors break as the cabinet lifts,
+and it overturns under the same motion as a free one, or a weaker one. Anchors that hold it must
+carry more than its weight.
 """
 
 import matplotlib.pyplot as plt

@@ -2,9 +2,9 @@
 A bridge pier that may rock
 ===========================
 
-A pier with its share of the deck, free to lift from the ground, under a near-fault pulse of growing
-strength. Rocking limits what comes into the pier: once it lifts, its base shear grows more slowly
-than the ground's acceleration.
+A pier with its share of the deck, which may lift off the ground, under a near-fault pulse of
+increasing strength. Rocking limits the forces in the pier: once it lifts off, its base shear
+increases more slowly than the ground acceleration.
 """
 
 import matplotlib.pyplot as plt

@@ -2,10 +2,10 @@
 A column of drums
 =================
 
-A column of five drums of 1 m by 1.2 m, dry stone on stone with a friction of 0.4, under one sine
-of 0.6 g and 1.5 Hz. Do its joints open, do the drums slip, and how far from their places are they
-in the end? It opens at the lower joints and rocks in pieces; each drum slips while it bears on an
-edge, and what is left of that after the earthquake is read from the stones.
+A column of five drums of 1 m by 1.2 m, stone on stone with a coefficient of friction of 0.4, under
+one sine of 0.6 g and 1.5 Hz. Which joints open, which drums slip, and how far are they from their
+places in the end? The lower joints open and the column rocks in pieces. Each drum slips while it
+stands on an edge, and the slips remain visible after the earthquake.
 """
 
 import matplotlib.pyplot as plt

@@ -2,9 +2,9 @@
 A façade that has come loose
 ============================
 
-A wall of masonry, 0.6 m thick, that has parted from the walls behind it and stands by its weight
-alone: the least pulse that throws it, over the period of the pulse. Taller walls are more slender,
-and larger.
+A masonry wall, 0.6 m thick, has separated from the walls behind it and stands by its weight alone.
+The figure shows the least pulse that overturns it, over the period of the pulse, for several
+heights. Taller walls are more slender, and larger.
 """
 
 import matplotlib.pyplot as plt

@@ -2,8 +2,8 @@
 A standing stone that leans
 ===========================
 
-A menhir whose top stands beside its foot, on stiff soil, under the same pulse to either side. It is
-in danger to the side to which it leans.
+A menhir whose top is beside its foot, on stiff soil, under the same pulse in both directions. It
+overturns more easily to the side to which it leans.
 """
 
 import numpy as np

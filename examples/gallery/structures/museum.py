@@ -3,7 +3,7 @@ Contents of a museum
 ====================
 
 A marble statue by its outline, a vase on a plinth and a tall showcase, on the second floor of a
-museum, in earthquakes of growing strength. A low centre of mass is worth more than a wide base.
+museum, under earthquakes of increasing strength. A low centre of mass helps more than a wide base.
 """
 
 import matplotlib.pyplot as plt

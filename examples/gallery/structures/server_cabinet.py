@@ -2,7 +2,8 @@
 A server cabinet: batteries below or above
 ==========================================
 
-The same cabinet, its batteries in the lowest and in the highest place, on the roof of a building.
+The same cabinet with its batteries in the lowest and in the highest place, on the roof of a
+building.
 """
 
 import rockframe as rf

@@ -2,9 +2,10 @@
 Granite blocks on a shake table
 ===============================
 
-248 tests of two blocks on a shake table. Nobody can predict each of them; how often a block falls
-can be predicted. Dots: of the tests for which an ensemble of fitted blocks predicts this share, so
-many fell. No test was predicted by a fit that knew its motion (:doc:`/validation_granite`).
+248 tests of two blocks on a shake table. The result of a single test cannot be predicted; how often
+a block overturns can be. Each dot shows the share of tests that overturned, of those for which an
+ensemble of fitted blocks predicted about the same share. The fit for a test never used tests of the
+same motion (:doc:`/validation_granite`).
 """
 
 import json

@@ -2,12 +2,13 @@
 A statue on its plinth
 ======================
 
-A statue of marble, 1.8 m high, stands on a plinth of stone that leaves 0.2 m free on either side.
-Does it matter how the marble is bedded? Friction is 0.6 on rough stone, 0.3 on polished stone, and
-0.2 on a sheet, under one sine of 1.5 Hz that grows. From rest a block slides where friction is less
-than its width over its height, 0.28 here. Above that it rocks, and where friction is not much
-above, it slides as it rocks. The statue is lost when it falls, or slides off: polish saves nothing,
-as a statue that has begun to rock keeps its corner nearly where it is; a sheet lets it slide.
+A statue of marble, 1.8 m high, stands on a plinth of stone that is 0.2 m wider on either side. Does
+the surface between them matter? The coefficient of friction is 0.6 on rough stone, 0.3 on polished
+stone, and 0.2 on a sheet; the motion is one sine of 1.5 Hz of increasing strength. From rest a
+block slides if the friction is less than its width over its height, here 0.28. With more friction
+it rocks, and with slightly more it rocks and slides. The statue is lost if it overturns or slides
+off. Polished stone does not help, since a rocking statue keeps its corner nearly at the same place;
+on a sheet the statue slides.
 """
 
 import matplotlib.pyplot as plt

@@ -2,7 +2,7 @@
 Annual rates
 ============
 
-Which intensities contribute to the rate at which a site overturns a cabinet
+The contribution of each intensity to the annual rate at which a cabinet overturns at a site
 (:doc:`/guide/clouds_and_hazard`).
 """
 

@@ -2,8 +2,8 @@
 Cloud analysis
 ==============
 
-Sixty motions as they are, a line through those that rock, and those that overturn apart
-(:doc:`/guide/clouds_and_hazard`).
+Sixty unscaled motions, with a line through the runs that rock; runs that overturn are treated
+separately (:doc:`/guide/clouds_and_hazard`).
 """
 
 import numpy as np

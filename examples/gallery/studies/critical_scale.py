@@ -2,7 +2,7 @@
 How much it takes to overturn
 =============================
 
-A tower on pads under one earthquake at all scales. Overturning is not monotone: above the critical
+A tower on pads under one earthquake at all scales. Overturning is not monotonic: above the critical
 scale there are others at which the tower stands (:doc:`/guide/critical_scale`).
 """
 

@@ -2,8 +2,9 @@
 Incremental dynamic analysis
 ============================
 
-Eight motions at growing scales, in grey, with the fractiles of their peaks. Full dots: the cabinet
-first falls; hollow ones: it stands again, or falls again (:doc:`/guide/analyses`).
+Eight motions at increasing scales, in grey, with the fractiles of their peaks. Solid dots: the
+cabinet overturns for the first time; hollow dots: it stands again, or overturns again
+(:doc:`/guide/analyses`).
 """
 
 import numpy as np

@@ -2,8 +2,9 @@
 A main shock and its aftershocks
 ================================
 
-The same three earthquakes in either order, with five seconds of rest in between. A block on rigid
-ground that has come to rest remembers nothing; the largest rotation so far is what is drawn.
+The same three earthquakes in both orders, with five seconds of rest between them. A block on rigid
+ground that has come to rest does not depend on earlier earthquakes; the figure shows the largest
+rotation so far.
 """
 
 import matplotlib.pyplot as plt

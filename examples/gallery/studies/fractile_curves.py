@@ -2,8 +2,8 @@
 Fractile curves
 ===============
 
-Eight motions at growing scales, with the fractiles of their peaks at an intensity, and of the
-intensities at a peak (:doc:`/guide/analyses`).
+Eight motions at increasing scales, with the fractiles of their peaks at an intensity, and those of
+the intensities at a peak (:doc:`/guide/analyses`).
 """
 
 import numpy as np

@@ -2,7 +2,8 @@
 Fragility of a cabinet
 ======================
 
-Twelve motions at seven scales; a lognormal capacity for each limit state (:doc:`/guide/fragility`).
+A lognormal capacity for each limit state, from twelve motions at seven scales
+(:doc:`/guide/fragility`).
 """
 
 import rockframe as rf

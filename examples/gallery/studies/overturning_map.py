@@ -2,9 +2,9 @@
 Which pulses overturn a block
 =============================
 
-One sine of every amplitude and frequency, after Zhang and Makris (2001): between the pulses that
-overturn after an impact and those that do so without one lies a band of stronger pulses that the
-block survives.
+One sine of every amplitude and frequency, after Zhang and Makris (2001). Between pulses that
+overturn the block after an impact and those that do so without one there is a band of pulses under
+which it remains standing.
 """
 
 import numpy as np

@@ -3,7 +3,7 @@ Larger blocks are safer
 =======================
 
 The least intensity that overturns blocks of all sizes and two shapes, under three motions: of two
-blocks of the same shape the larger one stands more.
+blocks of the same shape the larger one withstands more.
 """
 
 import warnings

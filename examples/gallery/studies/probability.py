@@ -2,8 +2,8 @@
 What matters when little is known
 =================================
 
-Width, height and the strength of the earthquake are uncertain: how probable is it that a cabinet
-falls, and which of them decides it?
+Width, height and the strength of the earthquake are uncertain. How probable is it that a cabinet
+overturns, and which of them matters most?
 """
 
 import rockframe as rf

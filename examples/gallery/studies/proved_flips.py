@@ -2,9 +2,9 @@
 What can be proved of chaotic flips
 ===================================
 
-A block rocks under a harmonic motion, at scales among which its verdict flips and flips back. With
-exact numbers nearly every verdict is proved; of all restitutions within a tolerance fewer are, for
-what rocks on for long forgets from where it came (:doc:`/guide/proved_verdicts`).
+A block rocks under a harmonic motion, at scales among which its verdict flips many times. With
+exact numbers nearly every verdict is proved. For all restitutions within a tolerance fewer are
+proved, since long rocking amplifies every difference (:doc:`/guide/proved_verdicts`).
 """
 
 import matplotlib.pyplot as plt

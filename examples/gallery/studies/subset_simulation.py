@@ -2,8 +2,8 @@
 One in several thousand
 =========================
 
-A block that hardly ever falls: level by level samples come nearer to overturning, and the product
-of the shares is the probability. Counting would take a million runs.
+The probability that a very safe block overturns: samples come closer to overturning level by level,
+and the product of their shares is the probability. Counting would need a million runs.
 """
 
 import rockframe as rf

@@ -2,7 +2,7 @@
 Time against error
 ==================
 
-All simpler models and all accuracies of one scene, timed and compared (:doc:`/guide/tradeoff`).
+Time and error of all simpler models and all accuracies of one scene (:doc:`/guide/tradeoff`).
 """
 
 import rockframe as rf
