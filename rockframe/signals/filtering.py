@@ -31,14 +31,14 @@ class _Steps:
         self.pieces = pieces
         # at starts and ends of the steps, shape (2, n): the ground may jump between them
         self.ground, self.slopes = (
-            length**2 * np.array([one[:, 0], one.sum(axis=1)])
-            for one in (pieces, derivatives_of(pieces))
+            length**2 * np.array([intervals[:, 0], intervals.sum(axis=1)])
+            for intervals in (pieces, derivatives_of(pieces))
         )
 
 
 def filter_all(pieces: Array, time_step: float, damping: float, periods: Array) -> Array:
     """Find the peaks of all oscillators, as `oscillator.march_all` does."""
-    found = np.zeros((periods.size, QUANTITIES))
+    peaks = np.zeros((periods.size, QUANTITIES))
     state = np.zeros((periods.size, 2))
     parts = np.ceil(STEPS_PER_PERIOD * time_step / periods).astype(int)
     for count in np.unique(parts).tolist():
@@ -47,12 +47,12 @@ def filter_all(pieces: Array, time_step: float, damping: float, periods: Array) 
         for first in range(0, len(pieces), rows):
             steps = _Steps(time_step / count, subdivided(pieces[first : first + rows], count))
             for k in oscillators:
-                _update_peaks(steps, float(periods[k]), damping, state[k], found[k])
+                _update_peaks(steps, float(periods[k]), damping, state[k], peaks[k])
     still = np.zeros((STEPS_PER_PERIOD, pieces.shape[1]))
-    for k in np.flatnonzero(_may_exceed_peaks(periods, damping, state, found)).tolist():
+    for k in np.flatnonzero(_may_exceed_peaks(periods, damping, state, peaks)).tolist():
         rest = _Steps(float(periods[k]) / STEPS_PER_PERIOD, still)
-        _update_peaks(rest, float(periods[k]), damping, state[k], found[k])
-    return found
+        _update_peaks(rest, float(periods[k]), damping, state[k], peaks[k])
+    return peaks
 
 
 def filter_pairs(
@@ -63,7 +63,7 @@ def filter_pairs(
     directions: Array,
 ) -> Array:
     """Find the peaks of all oscillators in all directions, as `oscillator.march_pairs` does."""
-    found = np.zeros((periods.size, len(directions)))
+    peaks = np.zeros((periods.size, len(directions)))
     still = np.zeros((STEPS_PER_PERIOD, pieces[0].shape[1]))
     for k, period in enumerate(periods.tolist()):
         state = np.zeros((2, 2))
@@ -71,13 +71,13 @@ def filter_pairs(
         rows = max(1, _STEPS_IN_PART // parts)
         for first in range(0, len(pieces[0]), rows):
             steps = [
-                _Steps(time_step / parts, subdivided(one[first : first + rows], parts))
-                for one in pieces
+                _Steps(time_step / parts, subdivided(samples[first : first + rows], parts))
+                for samples in pieces
             ]
-            _update_direction_peaks(steps, period, damping, state, directions, found[k])
+            _update_direction_peaks(steps, period, damping, state, directions, peaks[k])
         rest = _Steps(period / STEPS_PER_PERIOD, still)
-        _update_direction_peaks([rest, rest], period, damping, state, directions, found[k])
-    return found
+        _update_direction_peaks([rest, rest], period, damping, state, directions, peaks[k])
+    return peaks
 
 
 def _update_direction_peaks(
@@ -90,7 +90,10 @@ def _update_direction_peaks(
 ) -> None:
     """Follow an oscillator under both components; update `state` and peaks of displacement (SI)."""
     states = np.array(
-        [_states(one, period, damping, start) for one, start in zip(steps, state, strict=True)]
+        [
+            _states(component, period, damping, start)
+            for component, start in zip(steps, state, strict=True)
+        ]
     )
     for first in range(0, states.shape[3], _STEPS_IN_BLOCK):
         block = states[..., first : first + _STEPS_IN_BLOCK]
@@ -105,14 +108,14 @@ def _update_direction_peaks(
         np.maximum.at(peaks, d, np.abs(_extrema(u[:, d, n], v[:, d, n], w[:, d, n])))
 
 
-def _may_exceed_peaks(periods: Array, damping: float, state: Array, found: Array) -> Any:
+def _may_exceed_peaks(periods: Array, damping: float, state: Array, peaks: Array) -> Any:
     """Tell which oscillators may pass their peaks in free vibration: their energy only falls."""
     frequency = 2.0 * np.pi / periods
     speed = np.hypot(frequency * state[:, 0], state[:, 1])
     bounds = speed[:, None] * np.column_stack(
         [1.0 / frequency, np.ones_like(frequency), (1.0 + 2.0 * damping) * frequency]
     )
-    return (bounds > found).any(axis=1)
+    return (bounds > peaks).any(axis=1)
 
 
 def _update_peaks(steps: _Steps, period: float, damping: float, state: Array, peaks: Array) -> None:
@@ -122,12 +125,12 @@ def _update_peaks(steps: _Steps, period: float, damping: float, state: Array, pe
     u, v, w = _states(steps, period, damping, state)
     rate = drag * w + stiffness * v
     jerk = -rate - steps.slopes
-    found = (
+    extremes = (
         _peak(u, v, w),
         _peak(v, w, jerk),
         _peak(drag * v + stiffness * u, rate, drag * jerk + stiffness * w),
     )
-    peaks[:] = np.maximum(peaks, found / steps.length ** np.arange(QUANTITIES))
+    peaks[:] = np.maximum(peaks, extremes / steps.length ** np.arange(QUANTITIES))
 
 
 def _states(steps: _Steps, period: float, damping: float, state: Array) -> Array:

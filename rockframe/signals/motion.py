@@ -429,11 +429,11 @@ def sign_changes(values: Array) -> NDArray[np.intp]:
 
 def absolute_peak(pieces: Array) -> float:
     """Return the greatest absolute value, also between the ends of intervals."""
-    found = [pieces[:, 0], pieces.sum(axis=1), extrema_of(pieces)[1]]
+    values = [pieces[:, 0], pieces.sum(axis=1), extrema_of(pieces)[1]]
     if pieces.shape[1] > 3:
         # the slope may be zero twice, or once and at an end: once on each side of its extremum
         second_derivatives = derivatives_of(derivatives_of(pieces))
         rows = sign_changes(second_derivatives)
         halves = split_at(pieces[rows], roots_of(second_derivatives[rows]))
-        found += [extrema_of(half)[1] for half in halves]
-    return float(np.max(np.abs(np.concatenate(found))))
+        values += [extrema_of(half)[1] for half in halves]
+    return float(np.max(np.abs(np.concatenate(values))))

@@ -215,11 +215,11 @@ def march_all(
     shifted: Vector,
     state: Vector,
     peaks: Vector,
-    found: Matrix,
+    all_peaks: Matrix,
 ) -> None:
     """Find the peaks of all oscillators, during the motion and in the period after it.
 
-    `found`, shape (k, 3), is filled: greatest relative displacement [m], relative velocity
+    `all_peaks`, shape (k, 3), is filled: greatest relative displacement [m], relative velocity
     [m s^-1] and absolute acceleration [m s^-2].
     """
     free = 2.0 * np.pi / STEPS_PER_PERIOD
@@ -236,12 +236,12 @@ def march_all(
             pieces, parts, length * length, kappa, damping, step, shifted, state, peaks
         )  # fmt: skip
         for j in range(QUANTITIES):
-            found[k, j] = peaks[j] / length**j
+            all_peaks[k, j] = peaks[j] / length**j
         state[1] *= free_length / length
         clear_peaks(peaks)
         march_oscillator(still, 1, 0.0, free, damping, free_step, shifted, state, peaks)
         for j in range(QUANTITIES):
-            found[k, j] = max(found[k, j], peaks[j] / free_length**j)
+            all_peaks[k, j] = max(all_peaks[k, j], peaks[j] / free_length**j)
 
 
 @kernel
@@ -404,9 +404,9 @@ def march_pairs(
     sample_directions: Matrix,
     outermost: Matrix,
     peaks: Vector,
-    found: Matrix,
+    all_peaks: Matrix,
 ) -> None:
-    """Find the peaks of all oscillators in all directions, in `found`, shape (k, d) [m]."""
+    """Find the peaks of all oscillators in all directions, in `all_peaks`, shape (k, d) [m]."""
     free = 2.0 * np.pi / STEPS_PER_PERIOD
     fill_step(free, damping, free_step)
     for k in range(periods.shape[0]):
@@ -443,4 +443,4 @@ def march_pairs(
             still, still, 1, 0.0, free, damping, free_step, shifted, start, end, directions, peaks
         )
         for d in range(directions.shape[0]):
-            found[k, d] = peaks[d]
+            all_peaks[k, d] = peaks[d]

@@ -55,16 +55,16 @@ def spectral_peaks(signal: Signal, periods: Array, damping_ratio: float) -> Arra
         Greatest relative displacement [m], relative velocity [m s^-1] and absolute
         acceleration [m s^-2].
     """
-    found = np.zeros((periods.size, 3))
-    found[:, 2] = absolute_peak(signal.pieces)  # a rigid oscillator moves with the ground
+    peaks = np.zeros((periods.size, 3))
+    peaks[:, 2] = absolute_peak(signal.pieces)  # a rigid oscillator moves with the ground
     moving = np.flatnonzero(periods > 0.0)
     if COMPILED:
-        found[moving] = _march(signal, periods[moving], damping_ratio)
+        peaks[moving] = _march(signal, periods[moving], damping_ratio)
     else:
         from rockframe.signals.filtering import filter_all
 
-        found[moving] = filter_all(signal.pieces, signal.time_step, damping_ratio, periods[moving])
-    return found
+        peaks[moving] = filter_all(signal.pieces, signal.time_step, damping_ratio, periods[moving])
+    return peaks
 
 
 def pseudo_spectra(
@@ -81,7 +81,7 @@ def pseudo_spectra(
 def _march(signal: Signal, periods: Array, damping_ratio: float) -> Array:
     pieces = np.ascontiguousarray(signal.pieces)
     powers = pieces.shape[1]
-    found = np.empty((periods.size, QUANTITIES))
+    peaks = np.empty((periods.size, QUANTITIES))
     march_all(
         pieces,
         np.zeros((STEPS_PER_PERIOD, powers)),
@@ -93,9 +93,9 @@ def _march(signal: Signal, periods: Array, damping_ratio: float) -> Array:
         np.empty(powers),
         np.empty(2),
         np.empty(QUANTITIES),
-        found,
+        peaks,
     )
-    return found
+    return peaks
 
 
 _BOTH_COMPONENTS: Final = 6
@@ -119,16 +119,20 @@ def rotated_displacements(
 
     `directions` are cosines and sines, shape (d, 2); both signals have one time step and length.
     """
-    one, other = (np.ascontiguousarray(pieces) for pieces in _same_degree(first, second))
-    powers = one.shape[1]
+    first_pieces, second_pieces = (
+        np.ascontiguousarray(pieces) for pieces in _same_degree(first, second)
+    )
+    powers = first_pieces.shape[1]
     if not COMPILED:
         from rockframe.signals.filtering import filter_pairs
 
-        return filter_pairs((one, other), first.time_step, damping_ratio, periods, directions)
-    found = np.empty((periods.size, len(directions)))
+        return filter_pairs(
+            (first_pieces, second_pieces), first.time_step, damping_ratio, periods, directions
+        )
+    displacements = np.empty((periods.size, len(directions)))
     march_pairs(
-        one,
-        other,
+        first_pieces,
+        second_pieces,
         np.zeros((STEPS_PER_PERIOD, powers)),
         first.time_step,
         float(damping_ratio),
@@ -142,19 +146,21 @@ def rotated_displacements(
         unit_vectors(_SAMPLE_DIRECTIONS),
         np.empty((_SAMPLE_DIRECTIONS, 3)),
         np.empty(len(directions)),
-        found,
+        displacements,
     )
-    return found
+    return displacements
 
 
 def rotated_peaks(first: Signal, second: Signal, directions: Array) -> Array:
     """Find the greatest acceleration of the ground in each direction: shape (d,) [m s^-2]."""
-    one, other = _same_degree(first, second)
-    return np.array([absolute_peak(cosine * one + sine * other) for cosine, sine in directions])
+    first_pieces, second_pieces = _same_degree(first, second)
+    return np.array(
+        [absolute_peak(cosine * first_pieces + sine * second_pieces) for cosine, sine in directions]
+    )
 
 
 def _same_degree(first: Signal, second: Signal) -> tuple[Array, Array]:
     pieces = first.pieces, second.pieces
-    powers = max(one.shape[1] for one in pieces)
-    one, other = (np.pad(each, ((0, 0), (0, powers - each.shape[1]))) for each in pieces)
-    return one, other
+    powers = max(each.shape[1] for each in pieces)
+    padded = [np.pad(each, ((0, 0), (0, powers - each.shape[1]))) for each in pieces]
+    return padded[0], padded[1]

@@ -122,36 +122,41 @@ class DisplayUnits:
 
     def convert_dataset(self, dataset: "xr.Dataset") -> "xr.Dataset":
         """Return a dataset with its values and their attributes ``units`` in these units."""
-        found: dict[str, Any] = {}
+        converted: dict[str, Any] = {}
         for name, values in dataset.variables.items():
             unit = self.chosen.get(str(values.attrs.get("units")))
             if unit is not None and values.dtype.kind in "fiu":
                 shown_in = dataset[name].copy(data=unit.of(values.to_numpy()))
-                found[str(name)] = shown_in.assign_attrs(units=unit.words)
-        coords = {name: found.pop(name) for name in list(found) if name in dataset.coords}
+                converted[str(name)] = shown_in.assign_attrs(units=unit.words)
+        coords = {name: converted.pop(name) for name in list(converted) if name in dataset.coords}
         texts = {name: self.convert_text(str(dataset.attrs[name])) for name in _SENTENCES
                 if name in dataset.attrs}  # fmt: skip
         return (
-            dataset.assign(found)
+            dataset.assign(converted)
             .assign_attrs(texts)
-            .assign_coords({name: (one.dims, one.data, one.attrs) for name, one in coords.items()})
+            .assign_coords(
+                {
+                    name: (coordinate.dims, coordinate.data, coordinate.attrs)
+                    for name, coordinate in coords.items()
+                }
+            )
         )
 
     def convert_text(self, text: str) -> str:
         """Convert the quantities in a text from SI units to these units."""
         return _QUANTITY.sub(self._converted_match, text) if self.chosen else text
 
-    def _converted_match(self, found: "re.Match[str]") -> str:
+    def _converted_match(self, match: "re.Match[str]") -> str:
         """Convert one number with its unit, a range of two, or a pair of coordinates."""
-        unit = self.chosen.get(_UNIT_SPELLINGS.get(found["unit"], found["unit"]))
+        unit = self.chosen.get(_UNIT_SPELLINGS.get(match["unit"], match["unit"]))
         if unit is None:
-            return found[0]
+            return match[0]
         across, up, first, last = (
-            "" if found[name] is None else _converted_number(found[name], unit.size)
+            "" if match[name] is None else _converted_number(match[name], unit.size)
             for name in ("across", "up", "first", "last")
         )
         numbers = f"({across}, {up})" if across else last
-        before = f"{first} {found['word']} " if first else ""
+        before = f"{first} {match['word']} " if first else ""
         return f"{before}{numbers}{unit_suffix(unit.words)}"
 
 

@@ -55,9 +55,9 @@ class CornerGuards(RigidCorners):
         slides = self.some_end_slides(mode)
         for k in range(self.body_count):
             if not self.is_rigid(k):
-                found = self.guards_on_base(k, slides, mode, state, slope, ground)
-                put(found.values, GUARDS * k, values)
-                put(found.changes, GUARDS * k, changes)
+                guards = self.guards_on_base(k, slides, mode, state, slope, ground)
+                put(guards.values, GUARDS * k, values)
+                put(guards.changes, GUARDS * k, changes)
         return Guards(values, changes)
 
     @kernel

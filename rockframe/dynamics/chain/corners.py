@@ -52,28 +52,28 @@ class RigidCorners(Chain):
     @kernel
     def bearing_corners(self, mode: int) -> int:
         """Return the set of corners on rigid bases that bear in a mode."""
-        found = 0
+        bearing = 0
         for k in range(self.body_count):
             if self.is_rigid(k):
                 part, contact = self.on_base(k), self.body_mode(mode, k).contact
-                found |= (1 if part.base.is_held(contact, True) else 0) << 2 * k
-                found |= (2 if part.base.is_held(contact, False) else 0) << 2 * k
-        return found
+                bearing |= (1 if part.base.is_held(contact, True) else 0) << 2 * k
+                bearing |= (2 if part.base.is_held(contact, False) else 0) << 2 * k
+        return bearing
 
     @kernel
     def tension_corners(self, mode: int) -> int:
         """Return the set of corners that are held in a mode though they do not press."""
-        found, bearing = 0, self.bearing_corners(mode)
+        in_tension, bearing = 0, self.bearing_corners(mode)
         for k in range(self.body_count):
             if self.is_rigid(k) and self.body_mode(mode, k).contact & IN_TENSION != 0:
-                found |= bearing & BOTH << 2 * k
-        return found
+                in_tension |= bearing & BOTH << 2 * k
+        return in_tension
 
     @inlined
-    def bears_alone(self, corners: int, one: int) -> bool:
+    def bears_alone(self, corners: int, corner: int) -> bool:
         """Whether a corner bears without the other one of its body."""
-        even = one & LEFT_CORNERS != 0
-        return corners & (one << 1 if even else one >> 1) == 0
+        even = corner & LEFT_CORNERS != 0
+        return corners & (corner << 1 if even else corner >> 1) == 0
 
     @kernel
     def with_bearing_corners(self, mode: int, corners: int, in_tension: int) -> int:
@@ -293,12 +293,12 @@ class RigidCorners(Chain):
     @kernel
     def resting_corners(self, mode: int, state: Vector) -> int:
         """Return the set of corners on rigid bases that touch their base and are at rest."""
-        found = 0
+        resting = 0
         for k in range(self.body_count):
             if self.is_rigid(k):
                 body = self.constrained_state(k, self.body_mode(mode, k), state)
-                found |= self.level_corners(k, body) << 2 * k
-        return found
+                resting |= self.level_corners(k, body) << 2 * k
+        return resting
 
     @inlined
     def closed_corners(self, mode: int, state: Vector) -> int:
@@ -308,14 +308,14 @@ class RigidCorners(Chain):
     @kernel
     def level_corners(self, k: int, body: BodyState) -> int:
         """Return the set of corners of a body that touch its base and are at rest, bits 1 and 2."""
-        law, found = self.on_base(k).body, 0
+        law, corners = self.on_base(k).body, 0
         line, size = law.base_line_at(body), law.size()
         level, speed = REST_TOLERANCE * size, REST_TOLERANCE * math.sqrt(law.gravity * size)
         if abs(line.left) <= level and abs(line.left_speed) <= speed:
-            found |= LEFT_ONLY
+            corners |= LEFT_ONLY
         if abs(line.right) <= level and abs(line.right_speed) <= speed:
-            found |= RIGHT_ONLY
-        return found
+            corners |= RIGHT_ONLY
+        return corners
 
     @kernel
     def move_onto_base(self, k: int, left: bool, body_mode: Mode, state: Vector) -> int:

@@ -95,17 +95,17 @@ class SlippingChain(SlipperyBases):
             slope = self.find_forces(mode, state, ground)
             self.forces_from_slope(mode, state, slope, ground)
             coefficient = STATIC if tries < most else KINETIC
-            found, push = self.overloaded_hold(released, coefficient, mode)
-            if found >= 0:
+            slipping, push = self.overloaded_hold(released, coefficient, mode)
+            if slipping >= 0:
                 if tries > 0:  # a body released at the limit of its friction has another force now
                     near = 0.0
-                mode = self.release(found, mode, state, memory)
-                mode = self.with_slip_sense(mode, found, -push)
+                mode = self.release(slipping, mode, state, memory)
+                mode = self.with_slip_sense(mode, slipping, -push)
             else:
-                found = self.reversed_start(near, mode, state, slope)
-                if found < 0:
+                slipping = self.reversed_start(near, mode, state, slope)
+                if slipping < 0:
                     break
-                mode = self.with_slip(found, 0.0, mode, state, memory)
+                mode = self.with_slip(slipping, 0.0, mode, state, memory)
             released = -1
         return mode
 
@@ -140,7 +140,7 @@ class SlippingChain(SlipperyBases):
             if body_mode.slides and not part.flies(body_mode.contact):
                 rate, noise = self.slip_rate(j, mode, state)
                 least = near * math.sqrt(part.body.gravity / part.body.size())
-                found = self.slip_guards(j, mode, state, slope, 0.0, 1.0)
-                if abs(rate) <= noise and found.slip_rate < -least:
+                guards = self.slip_guards(j, mode, state, slope, 0.0, 1.0)
+                if abs(rate) <= noise and guards.slip_rate < -least:
                     return j
         return -1

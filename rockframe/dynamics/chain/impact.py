@@ -252,8 +252,8 @@ def free_corner_rise(system: Any, k: int, side: int) -> float:
     unused = MAX_CONSTRAINTS * system.body_count - 1  # a row that no constraint needs
     jacobian = unused * CONSTRAINT_STRIDE + at.JACOBIAN
     write_jacobian(system, k, 0.0, 1.0, work[i + at.CORNER_LEVERS], jacobian, work, rows)
-    found = combined_acceleration(system.body_count, k, jacobian, work, rows)
-    return float(found - work[i + at.NORMAL_PRESCRIBED])
+    rise = combined_acceleration(system.body_count, k, jacobian, work, rows)
+    return float(rise - work[i + at.NORMAL_PRESCRIBED])
 
 
 @kernel
@@ -299,21 +299,23 @@ def find_bearing_corners(
     must_press = ~before | max(leaving, 0)  # the leaving corner, too, if it is to bear on
     lowest = second = math.inf
     # first sets that are admissible within rounding; in each round first the near ones
-    for trial in range(2 if impulsive else 1 + ALL_SLIPS_ROUND):
-        if trial % 2 == 1 and count <= FIRST_EXHAUSTIVE_COUNT:
+    for trial_round in range(2 if impulsive else 1 + ALL_SLIPS_ROUND):
+        if trial_round % 2 == 1 and count <= FIRST_EXHAUSTIVE_COUNT:
             continue  # there are no sets farther off
-        tried = near if trial % 2 == 0 else far
+        tried = near if trial_round % 2 == 0 else far
         subset = next_subset(closed, tried)
-        search = JAMMED if leaving == JAMMED else trial
-        least = noise if impulsive or trial > 1 else ROUNDING * system.row_value(0, at.GRAVITY)
+        search = JAMMED if leaving == JAMMED else trial_round
+        least = (
+            noise if impulsive or trial_round > 1 else ROUNDING * system.row_value(0, at.GRAVITY)
+        )
         while subset >= 0:
             bears = subset | in_tension
             if leaving <= 0 or bears != before:
-                found = solve_subset(system, search, mode, bears, closed, impulsive, least, state)
-                if found.violation < 0 and (
+                trial = solve_subset(system, search, mode, bears, closed, impulsive, least, state)
+                if trial.violation < 0 and (
                     impulsive or all_in_compression(system, bears & must_press)
                 ):
-                    loss = found.loss if impulsive else float(bit_count(bears ^ before))
+                    loss = trial.loss if impulsive else float(bit_count(bears ^ before))
                     admissible += 1
                     if loss < lowest:
                         other, second, chosen, lowest = chosen, lowest, bears, loss
@@ -363,16 +365,24 @@ def find_held_corner(
     subset, follower = before & closed, closed  # `before` comes first and excludes most others
     while subset >= 0:
         for corner in range(2 * system.body_count):
-            one, bears = 1 << corner, subset | in_tension
-            distance = 2 * bit_count(bears ^ before) + (0 if one == leaving else 1)
-            if subset & one == 0 or not system.bears_alone(subset, one) or distance >= least:
+            corner_bit, bears = 1 << corner, subset | in_tension
+            distance = 2 * bit_count(bears ^ before) + (0 if corner_bit == leaving else 1)
+            if (
+                subset & corner_bit == 0
+                or not system.bears_alone(subset, corner_bit)
+                or distance >= least
+            ):
                 continue
-            found = system.try_corners(mode, bears, closed & ~one, False, noise, state)
+            trial = system.try_corners(mode, bears, closed & ~corner_bit, False, noise, state)
             pulls = system.corner_force(corner // 2, corner % 2 == 0) < 0.0
-            if found.violation < 0 and pulls and all_in_compression(system, bears & ~before & ~one):
-                free = system.try_corners(mode, bears & ~one, closed, False, noise, state)
+            if (
+                trial.violation < 0
+                and pulls
+                and all_in_compression(system, bears & ~before & ~corner_bit)
+            ):
+                free = system.try_corners(mode, bears & ~corner_bit, closed, False, noise, state)
                 if free.violation >= 0:
-                    chosen, held, least = bears, one, distance
+                    chosen, held, least = bears, corner_bit, distance
         subset = next_subset(follower, near)
         follower = subset - 1
     if held != 0:
@@ -399,8 +409,8 @@ def find_sticking_corners(
     """Return the set of corners that bear by :eq:`eq-sticking`, found by least-index pivoting."""
     subset = closed
     for _ in range(MAX_PIVOTS):
-        found = solve_trial(system, mode, subset, closed, True, impulsive, noise, state)
-        if found.violation < 0:
+        trial = solve_trial(system, mode, subset, closed, True, impulsive, noise, state)
+        if trial.violation < 0:
             break
-        subset ^= 1 << found.violation
+        subset ^= 1 << trial.violation
     return subset

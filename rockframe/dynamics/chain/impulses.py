@@ -209,11 +209,11 @@ class RigidImpulses(CornerGuards):
             if at_low >= 0.0:
                 break
             share = low - (high - low) * at_low / (at_high - at_low)
-            found = self.try_landing(k, 0, LandingScales(press, share), mode, closed, state).slip
-            if found > 0.0:
-                high, at_high, at_low = share, found, 0.5 * at_low
+            slip = self.try_landing(k, 0, LandingScales(press, share), mode, closed, state).slip
+            if slip > 0.0:
+                high, at_high, at_low = share, slip, 0.5 * at_low
             else:
-                low, at_low, at_high = share, found, 0.5 * at_high
+                low, at_low, at_high = share, slip, 0.5 * at_high
         return low
 
     @kernel
@@ -238,10 +238,10 @@ class RigidImpulses(CornerGuards):
             rises, least = right_after - right, noise_right + more_right
         if abs(rises) <= least:
             rises = 0.0
-        found = LandingSpeeds(rises, self.slip_along_friction(k, mode, state))
+        speeds = LandingSpeeds(rises, self.slip_along_friction(k, mode, state))
         for i in range(n):
             state[n + i] = before[i]
-        return found
+        return speeds
 
     @kernel
     def slip_along_friction(self, k: int, mode: int, state: Vector) -> float:

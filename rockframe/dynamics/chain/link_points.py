@@ -86,12 +86,14 @@ class LinkPoints(LinkRows):
     @inlined
     def end_points(self, row: Vector, work: Vector) -> tuple[DisplacedPoint, DisplacedPoint]:
         """Return displacements and velocities of both points of a link."""
-        one = self.displaced_point(int(row[FIRST_BODY]), row[FIRST_X], row[FIRST_Y], work)
-        return one, self.displaced_point(int(row[SECOND_BODY]), row[SECOND_X], row[SECOND_Y], work)
+        first = self.displaced_point(int(row[FIRST_BODY]), row[FIRST_X], row[FIRST_Y], work)
+        return first, self.displaced_point(
+            int(row[SECOND_BODY]), row[SECOND_X], row[SECOND_Y], work
+        )
 
     @inlined
     def link_kinematics(
-        self, row: Vector, one: DisplacedPoint, other: DisplacedPoint
+        self, row: Vector, first: DisplacedPoint, second: DisplacedPoint
     ) -> LinkMotion:
         """Return elongation, rate and direction of a link, :eq:`eq-link`, but no acceleration.
 
@@ -99,9 +101,9 @@ class LinkPoints(LinkRows):
         """
         separation_x, separation_y = row[SEPARATION_X], row[SEPARATION_Y]
         initial_length = row[INITIAL_LENGTH]
-        shift_x, shift_y = one.x - other.x, one.y - other.y
+        shift_x, shift_y = first.x - second.x, first.y - second.y
         x, y = separation_x + shift_x, separation_y + shift_y
-        speed_x, speed_y = one.speed_x - other.speed_x, one.speed_y - other.speed_y
+        speed_x, speed_y = first.speed_x - second.speed_x, first.speed_y - second.speed_y
         direction_x, direction_y = row[DIRECTION_X], row[DIRECTION_Y]
         if direction_x != 0.0 or direction_y != 0.0:
             elongation = direction_x * shift_x + direction_y * shift_y
@@ -151,15 +153,15 @@ class LinkPoints(LinkRows):
 
         The acceleration of an idle link is left 0.
         """
-        one, other = self.end_points(row, work)
-        found, x, y = self.link_kinematics(row, one, other)
+        first, second = self.end_points(row, work)
+        stretch, x, y = self.link_kinematics(row, first, second)
         if idle:
-            return found
-        on_x, on_y = self.point_acceleration(int(row[FIRST_BODY]), one, work)
-        to_x, to_y = self.point_acceleration(int(row[SECOND_BODY]), other, work)
-        speed_x, speed_y = one.speed_x - other.speed_x, one.speed_y - other.speed_y
+            return stretch
+        on_x, on_y = self.point_acceleration(int(row[FIRST_BODY]), first, work)
+        to_x, to_y = self.point_acceleration(int(row[SECOND_BODY]), second, work)
+        speed_x, speed_y = first.speed_x - second.speed_x, first.speed_y - second.speed_y
         across = speed_x * y - speed_y * x
-        length = found.given + found.elongation
+        length = stretch.given + stretch.elongation
         centripetal = across * across / length if length > 0.0 else 0.0
         acceleration = x * (on_x - to_x) + y * (on_y - to_y) + centripetal
-        return Stretch(found.elongation, found.rate, acceleration, found.given, found.noise)
+        return Stretch(stretch.elongation, stretch.rate, acceleration, stretch.given, stretch.noise)

@@ -192,8 +192,8 @@ class LinkRows(Linkable):
     @inlined
     def link_variables(self, i: int, state: Vector) -> Vector:
         """Return the variables of a link in a state."""
-        each = self.law.variables()
-        return view_of(state, 2 * self.coordinates() + i * each, each)
+        count = self.law.variables()
+        return view_of(state, 2 * self.coordinates() + i * count, count)
 
     @inlined
     def poses(self) -> Vector:

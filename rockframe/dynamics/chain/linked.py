@@ -58,21 +58,21 @@ class LinkMechanics(LinkPoints):
         for i in range(self.link_count):
             row, own = self.row_of_link(i), self.link_variables(i, state)
             law, link_state = self.law_of(row), self.link_state(mode, row)
-            each = law.variables()
-            rates = view_of(out, self.coordinates() + i * each, each)
+            count = law.variables()
+            rates = view_of(out, self.coordinates() + i * count, count)
             if law.idles(link_state):
-                for j in range(each):
+                for j in range(count):
                     rates[j] = 0.0
                 continue
-            one, other = self.end_points(row, work)
-            link = self.link_kinematics(row, one, other)
+            first, second = self.end_points(row, work)
+            link = self.link_kinematics(row, first, second)
             force = law.force(link_state, link.stretch, own)
             lost += law.power(link_state, link.stretch, own)
             self.add_point_force(
-                int(row[FIRST_BODY]), one, -force * link.x, -force * link.y, work, poses
+                int(row[FIRST_BODY]), first, -force * link.x, -force * link.y, work, poses
             )
             self.add_point_force(
-                int(row[SECOND_BODY]), other, force * link.x, force * link.y, work, poses
+                int(row[SECOND_BODY]), second, force * link.x, force * link.y, work, poses
             )
             law.rates(link_state, link.stretch, own, rates)
         return lost
@@ -103,12 +103,12 @@ class LinkMechanics(LinkPoints):
     @kernel
     def guards_in(self, mode: int, state: Vector, slope: Slope, ground: Ground) -> Guards:
         """Return the guards of the bodies, then of each link in turn, and their rates."""
-        found, idle = self.guards_of_bodies(mode, state, slope, ground), self.all_idle(mode)
+        guards, idle = self.guards_of_bodies(mode, state, slope, ground), self.all_idle(mode)
         work, values, changes = self.workspace(), self.guard_workspace(0), self.guard_workspace(1)
         if idle and self.moving_in(mode) == 0:
             for i in range(self.body_guard_count(), len(values)):
                 values[i], changes[i] = 1.0, 0.0
-            return found
+            return guards
         if idle:
             self.write_kinematics_and_poses(mode, state, work)
         else:
@@ -120,7 +120,7 @@ class LinkMechanics(LinkPoints):
             for which in range(GUARDS):
                 value, change = law.guard(which, link_state, link, own)
                 values[first + which], changes[first + which] = value, change
-        return found
+        return guards
 
     @inlined
     def all_idle(self, mode: int) -> bool:
@@ -137,38 +137,38 @@ class LinkMechanics(LinkPoints):
         self, mode: int, guard: int, state: Vector, ground: Ground, memory: Vector
     ) -> int:
         """Carry out the switch of a body or of a link; return the new mode."""
-        place, first = self.link_event_index(), self.body_guard_count()
-        if guard < first:
+        place, body_guards = self.link_event_index(), self.body_guard_count()
+        if guard < body_guards:
             memory[place] = 0.0
             return self.switch_body(mode, guard, state, ground, memory)
         self.reset_event(memory)
-        i = (guard - first) // GUARDS
+        i = (guard - body_guards) // GUARDS
         row, own, work = self.row_of_link(i), self.link_variables(i, state), self.workspace()
         self.write_kinematics_and_poses(mode, state, work)
-        one, other = self.end_points(row, work)
+        first, second = self.end_points(row, work)
         link_state, value = self.link_state(mode, row), int(row[PLACE_VALUE])
-        found = self.law_of(row).switch(
-            guard - first - GUARDS * i,
+        event = self.law_of(row).switch(
+            guard - body_guards - GUARDS * i,
             link_state,
-            self.link_kinematics(row, one, other).stretch,
+            self.link_kinematics(row, first, second).stretch,
             own,
         )
-        memory[LAST_EVENT] = found.event
-        memory[LINK_LOSS] += found.lost
+        memory[LAST_EVENT] = event.event
+        memory[LINK_LOSS] += event.lost
         memory[place] = i + 1.0
-        return mode + value * (found.state - link_state)
+        return mode + value * (event.state - link_state)
 
     @kernel
     def energies(self, mode: int, state: Vector) -> Energies:
         """Return the energies of all bodies, bases and links."""
-        found, work = self.energies_of_bodies(mode, state), self.workspace()
+        energies, work = self.energies_of_bodies(mode, state), self.workspace()
         self.write_poses(mode, state, work)
-        gravity, elastic, change = found.gravity, found.elastic, found.from_rest
+        gravity, elastic, change = energies.gravity, energies.elastic, energies.from_rest
         for i in range(self.link_count):
             row, own = self.row_of_link(i), self.link_variables(i, state)
-            one, other = self.end_points(row, work)
+            first, second = self.end_points(row, work)
             stored = self.law_of(row).energy(
-                self.link_state(mode, row), self.link_kinematics(row, one, other).stretch, own
+                self.link_state(mode, row), self.link_kinematics(row, first, second).stretch, own
             )
             # loads and walls have a fixed direction; a load has one state, a wall two
             if (row[DIRECTION_X] != 0.0 or row[DIRECTION_Y] != 0.0) and row[STATE_COUNT] <= 1.0:
@@ -176,7 +176,7 @@ class LinkMechanics(LinkPoints):
             else:
                 elastic += stored
                 change += stored - row[REST_ENERGY]
-        return Energies(found.kinetic, gravity, elastic, change)
+        return Energies(energies.kinetic, gravity, elastic, change)
 
     @kernel
     def observe(
@@ -188,16 +188,16 @@ class LinkMechanics(LinkPoints):
         for i in range(self.link_count):
             row, own = self.row_of_link(i), self.link_variables(i, state)
             law, link_state = self.law_of(row), self.link_state(mode, row)
-            one, other = self.end_points(row, work)
-            link = self.link_kinematics(row, one, other)
+            first, second = self.end_points(row, work)
+            link = self.link_kinematics(row, first, second)
             j = self.body_column_count() + LINK_COLUMNS * i
             force = law.force(link_state, link.stretch, own)
             out[j], out[j + 1] = force, link.stretch.elongation
             out[j + 2] = law.shown(link_state)
             if row[FIRST_BODY] == 0.0:
-                moment -= force * (link.x * one.arm_y - link.y * one.arm_x)
+                moment -= force * (link.x * first.arm_y - link.y * first.arm_x)
             if row[SECOND_BODY] == 0.0:
-                moment += force * (link.x * other.arm_y - link.y * other.arm_x)
+                moment += force * (link.x * second.arm_y - link.y * second.arm_x)
         out[self.columns() - 1] = moment
         return out
 
@@ -218,9 +218,11 @@ class LinkMechanics(LinkPoints):
         self.write_kinematics_and_poses(mode, state, work)
         for i in range(self.link_count):
             row, own = self.row_of_link(i), self.link_variables(i, state)
-            one, other = self.end_points(row, work)
-            found = self.law_of(row).starting(self.link_kinematics(row, one, other).stretch, own)
-            mode += int(row[PLACE_VALUE]) * (found - self.link_state(mode, row))
+            first, second = self.end_points(row, work)
+            link_state = self.law_of(row).starting(
+                self.link_kinematics(row, first, second).stretch, own
+            )
+            mode += int(row[PLACE_VALUE]) * (link_state - self.link_state(mode, row))
         return mode
 
 
@@ -231,13 +233,13 @@ def link_law_and_rows(
 
     `modes` is the number of modes of the bodies without links.
     """
-    laws = [one.numbers.law for one in links]
+    laws = [link.numbers.law for link in links]
     kinds = law_prototypes(laws)
     own = [combined_law(kinds, law) for law in laws]
     rows, value = list[Vector](), modes
-    for one, each in zip(links, own, strict=True):
-        rows.append(link_row(one, each, value))
-        value *= padded_state_count(one.numbers.law.states())
+    for link, numbers in zip(links, own, strict=True):
+        rows.append(link_row(link, numbers, value))
+        value *= padded_state_count(link.numbers.law.states())
     if value > MAX_MODES:
         msg = f"{len(links)} links are more than {bodies} bodies can have"
         raise AssemblyError([msg])

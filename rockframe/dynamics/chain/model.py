@@ -55,8 +55,8 @@ class AtRest(NamedTuple):
 
 def bare_chain(bodies: Sequence[ChainBody], ties: Sequence[ChainLink] = ()) -> Chain:
     """Return the system of stacked bodies, from the top down, without their ties."""
-    kind = RigidChain if any(is_rigid(one.base) for one in bodies) else Chain
-    rows = [body_row(one.body, one.base, one.mass, one.top, one.offset) for one in bodies]
+    kind = RigidChain if any(is_rigid(body.base) for body in bodies) else Chain
+    rows = [body_row(body.body, body.base, body.mass, body.top, body.offset) for body in bodies]
     for row in rows:
         row[at.FORCE_SCALE] = max(
             row[at.FORCE_SCALE], link_force_rounding(ties) / ROUNDING_OF_FORCES
@@ -67,7 +67,7 @@ def bare_chain(bodies: Sequence[ChainBody], ties: Sequence[ChainLink] = ()) -> C
 def with_friction(bare: Chain, frictions: Sequence[tuple[float, float, float]]) -> Chain:
     """Return the system `bare`, of bases without slip, with friction on the bases."""
     deformable = not isinstance(bare, RigidChain) and all(
-        math.isfinite(one[0]) for one in frictions
+        math.isfinite(friction[0]) for friction in frictions
     )
     kind = SlippingChain if deformable else SlippingRigidChain
     return kind(bare.body_count, np.concatenate([bare.rows, friction_numbers(frictions)]))
@@ -109,7 +109,7 @@ def chain_model(
     alone = with_friction(bare, frictions) if frictions else bare
     system = with_links(alone, ties) if ties else alone
     fastest, damping_rate = fastest_vibration(bodies, ties)
-    carried = np.cumsum([one.mass for one in bodies])
+    carried = np.cumsum([body.mass for body in bodies])
     starts = StartConditions(bodies, rest, start_height)
     if isinstance(system, LinkedBodies):
         mode, state, _ = _initial(system, starts, Start())
@@ -123,8 +123,11 @@ def chain_model(
         rotation_weights=_weights(count, 0),
         scales=np.append(_scales(bodies), scales),
         guard_tolerance=np.concatenate([
-            *(_tolerance(one.base, on / one.mass) for one, on in zip(bodies, carried, strict=True)),
-            *(link_guard_tolerance(one) for one in ties),
+            *(
+                _tolerance(body.base, load / body.mass)
+                for body, load in zip(bodies, carried, strict=True)
+            ),
+            *(link_guard_tolerance(tie) for tie in ties),
         ]),
         columns=(
             *(column for k in range(count) for column in _columns(bodies[k].base, k)),
@@ -152,12 +155,13 @@ def chain_model(
         fastest_frequency=fastest,
         damping_rate=damping_rate,
         energy_scale=sum(
-            one.mass * one.body.gravity * radius_of(one.body) * one.body.angle for one in bodies
+            body.mass * body.body.gravity * radius_of(body.body) * body.body.angle
+            for body in bodies
         ),
         initial=lambda start: _initial(system, starts, start),
-        rounding=None if all(is_rigid(one.base) for one in bodies) else rounding_estimate(
-            sum(radius_of(one.body) for one in bodies),
-            sum(one.base.settlement for one in bodies),
+        rounding=None if all(is_rigid(body.base) for body in bodies) else rounding_estimate(
+            sum(radius_of(body.body) for body in bodies),
+            sum(body.base.settlement for body in bodies),
             _unit_responses(bodies), fastest, len(scales),
         ),
         other_limits=np.array(
@@ -178,10 +182,10 @@ def _tolerance(base: BaseNumbers, carried: float) -> Vector:
     """Return the rounding noise of a body's guards; each end of a bed uses one guard."""
     if is_rigid(base):
         return np.full(GUARDS, ROUNDING_OF_FORCES * carried)
-    found = guard_tolerances(base)
+    tolerances = guard_tolerances(base)
     ends = len(base.end_tolerance)
     if ends == CORNER_GUARDS:
-        return found
+        return tolerances
     all_of_them = np.full(GUARDS, ROUNDING)
     all_of_them[[0, CORNER_GUARDS]] = base.end_tolerance[0]
     return all_of_them
@@ -192,19 +196,19 @@ def _columns(base: BaseNumbers, k: int) -> tuple[Column, ...]:
     own = (*BODY_COLUMNS, Column("rotation_on_base"), Column("vertical_displacement_on_base"))
     unused = tuple(Column(f"unused_{i}") for i in range(BASE_COLUMNS - len(base.columns)))
     return tuple(
-        Column(column_of(one.name, k), one.per_mass, one.mass_ratio)
-        for one in (*own, *base.columns, *unused)
+        Column(column_of(column.name, k), column.per_mass, column.mass_ratio)
+        for column in (*own, *base.columns, *unused)
     )
 
 
 def link_force_rounding(ties: Sequence[ChainLink]) -> float:
     """Return the noise in forces of corners from the rounding of the lengths of stiff ties."""
-    return ROUNDING * sum(one.numbers.stiffness * one.length_scale for one in ties)
+    return ROUNDING * sum(tie.numbers.stiffness * tie.length_scale for tie in ties)
 
 
 def visible_links(ties: Sequence[ChainLink]) -> int:
     """Return the number of links in the results: all but loads, which come last."""
-    return sum(not isinstance(one.numbers.law, SteadyForce) for one in ties)
+    return sum(not isinstance(tie.numbers.law, SteadyForce) for tie in ties)
 
 
 def link_scales(system: LinkMechanics, ties: Sequence[ChainLink]) -> list[float]:
@@ -212,8 +216,8 @@ def link_scales(system: LinkMechanics, ties: Sequence[ChainLink]) -> list[float]
 
     Each link has as many variables as the law that has the most.
     """
-    each = system.law.variables()
-    return [size for one in ties for size in (*one.numbers.variable_scales, *[1.0] * each)[:each]]
+    count = system.law.variables()
+    return [size for tie in ties for size in (*tie.numbers.variable_scales, *[1.0] * count)[:count]]
 
 
 def link_guard_tolerance(tie: ChainLink) -> Vector:
@@ -234,13 +238,13 @@ def link_columns(ties: int, shown: int) -> Iterator[Column]:
 
 def _scales(bodies: Sequence[ChainBody]) -> Vector:
     places, sways, place_rates, sway_rates, carried = [], [], [], [], 0.0
-    for one in bodies:
-        carried += one.mass
-        sway, rate = radius_of(one.body) * one.body.angle, rocking_rate(per_own_mass(one))
-        rise, vertical = one.base.settlement, math.sqrt(one.base.vertical_stiffness / carried)
-        if is_rigid(one.base):
-            rise, vertical = sway * one.body.angle, rate
-        places += [one.body.angle, rise]
+    for body in bodies:
+        carried += body.mass
+        sway, rate = radius_of(body.body) * body.body.angle, rocking_rate(per_own_mass(body))
+        rise, vertical = body.base.settlement, math.sqrt(body.base.vertical_stiffness / carried)
+        if is_rigid(body.base):
+            rise, vertical = sway * body.body.angle, rate
+        places += [body.body.angle, rise]
         place_rates += [rate, vertical]
         sways.append(sway)
         sway_rates.append(rate)
@@ -250,8 +254,7 @@ def _scales(bodies: Sequence[ChainBody]) -> Vector:
 
 def _unit_responses(bodies: Sequence[ChainBody]) -> Vector:
     places = []
-    for one in bodies:
-        body = per_own_mass(one)
+    for body in map(per_own_mass, bodies):
         places += [0.5 * (body.left + body.right) / (body.inertia + body.height**2), 1.0]
     return np.array([*places, *np.ones(len(bodies))])
 
@@ -269,7 +272,7 @@ def _initial_placements(highest: BodyOnBase, starts: StartConditions, start: Sta
     placements = list(starts.rest or [AtRest(0.0, 0.0)] * len(starts.bodies))
     if start.rotation is None and start.vertical_displacement is None:
         return placements
-    below = sum(one.rotation for one in placements[1:])
+    below = sum(placement.rotation for placement in placements[1:])
     rotation = placements[0].rotation if start.rotation is None else start.rotation - below
     height = start.vertical_displacement
     if height is None and is_rigid(starts.bodies[0].base):
@@ -318,10 +321,10 @@ def _initial(system: Chain, starts: StartConditions, start: Start) -> tuple[int,
     state = np.zeros(2 * BODY_DOF * count + system.variables())
     memory = np.zeros(len(MEMORY) + count)
     placements, mode = _initial_placements(system.on_base(0), starts, start), 0
-    for k, one in enumerate(placements):
+    for k, placement in enumerate(placements):
         moving = k == 0
         body = BodyState(
-            one.rotation, one.vertical, 0.0, start.angular_velocity if moving else 0.0,
+            placement.rotation, placement.vertical, 0.0, start.angular_velocity if moving else 0.0,
             start.vertical_velocity if moving else 0.0, 0.0,
         )  # fmt: skip
         # a body at rest upright has no side yet: it takes that of the body above

@@ -206,45 +206,47 @@ def add_constraint(
 def combined_acceleration(moving: int, k: int, direction: int, work: Vector, rows: Vector) -> float:
     """Return a combination of the accelerations of a body and, if it moves, of the one below."""
     i = k * BODY_STRIDE
-    found = (
+    acceleration = (
         rows[direction] * work[i + at.ACCELERATION_X]
         + rows[direction + 1] * work[i + at.ACCELERATION_Y]
         + rows[direction + 2] * work[i + at.ANGULAR_ACCELERATION]
     )
     if k + 1 < moving:
         j = i + BODY_STRIDE
-        found += (
+        acceleration += (
             rows[direction + 3] * work[j + at.ACCELERATION_X]
             + rows[direction + 4] * work[j + at.ACCELERATION_Y]
             + rows[direction + 5] * work[j + at.ANGULAR_ACCELERATION]
         )
-    return found
+    return acceleration
 
 
 @inlined
-def inverse_mass_product(system: ChainArray, k: int, one: int, other: int, rows: Vector) -> float:
+def inverse_mass_product(
+    system: ChainArray, k: int, first: int, second: int, rows: Vector
+) -> float:
     """Return the product of two directions of one body over its mass and inertia."""
     per_mass = system.row_value(k, at.INVERSE_MASS)
     per_inertia = system.row_value(k, at.INVERSE_INERTIA)
-    moved = rows[one] * rows[other] + rows[one + 1] * rows[other + 1]
-    return per_mass * moved + per_inertia * rows[one + 2] * rows[other + 2]
+    moved = rows[first] * rows[second] + rows[first + 1] * rows[second + 1]
+    return per_mass * moved + per_inertia * rows[first + 2] * rows[second + 2]
 
 
 @inlined
 def matrix_entry(system: ChainArray, moving: int, row: int, column: int, rows: Vector) -> float:
     """Return the response of constraint `row` to a unit force of constraint `column`."""
     a, b = row * CONSTRAINT_STRIDE, column * CONSTRAINT_STRIDE
-    one, other = int(rows[a + at.CONSTRAINED_BODY]), int(rows[b + at.CONSTRAINED_BODY])
-    jacobian, direction, found = a + at.JACOBIAN, b + at.FORCE_DIRECTION, 0.0
-    if one == other:
-        found = inverse_mass_product(system, one, jacobian, direction, rows)
-        if one + 1 < moving:
-            found += inverse_mass_product(system, one + 1, jacobian + 3, direction + 3, rows)
-    elif one == other + 1:
-        found = inverse_mass_product(system, one, jacobian, direction + 3, rows)
-    elif one + 1 == other:
-        found = inverse_mass_product(system, other, jacobian + 3, direction, rows)
-    return found
+    row_body, column_body = int(rows[a + at.CONSTRAINED_BODY]), int(rows[b + at.CONSTRAINED_BODY])
+    jacobian, direction, entry = a + at.JACOBIAN, b + at.FORCE_DIRECTION, 0.0
+    if row_body == column_body:
+        entry = inverse_mass_product(system, row_body, jacobian, direction, rows)
+        if row_body + 1 < moving:
+            entry += inverse_mass_product(system, row_body + 1, jacobian + 3, direction + 3, rows)
+    elif row_body == column_body + 1:
+        entry = inverse_mass_product(system, row_body, jacobian, direction + 3, rows)
+    elif row_body + 1 == column_body:
+        entry = inverse_mass_product(system, column_body, jacobian + 3, direction, rows)
+    return entry
 
 
 @inlined

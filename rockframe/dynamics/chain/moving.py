@@ -170,14 +170,14 @@ class MovingBodies(ChainArray):
     @kernel
     def find_forces(self, mode: int, state: Vector, ground: Ground) -> Vector:
         """Return what `accelerate` does, with forces of all bodies and the inputs they are for."""
-        found = self.accelerate_bodies(self.body_count, mode, state, ground)
+        slope = self.accelerate_bodies(self.body_count, mode, state, ground)
         note = self.solved_inputs()
         note[0], note[2], note[3] = mode >> HALF_OF_BITS, ground.x, ground.y
         note[1] = mode - (mode >> HALF_OF_BITS << HALF_OF_BITS)
         for i in range(2 * self.coordinates()):
             note[INPUTS_BEFORE_STATE + i] = state[i]
         self.workspace()[(self.body_count - 1) * BODY_STRIDE + at.FORCES_VALID] = 1.0
-        return found
+        return slope
 
     @kernel
     def forces_are_valid(self, mode: int, state: Vector, ground: Ground) -> bool:

@@ -59,14 +59,14 @@ def block_on_cap(
     frictions: Sequence[tuple[float, float, float]],
 ) -> ContactModel:  # fmt: skip
     """Assemble the model of a block on a cap, arguments as of :func:`chain`."""
-    found = chain_model((block, cap), mass, rest, frictions=frictions)
-    kind = BothSlip if isinstance(found.system, SlippingChain) else OneSlips
+    model = chain_model((block, cap), mass, rest, frictions=frictions)
+    kind = BothSlip if isinstance(model.system, SlippingChain) else OneSlips
     slips = Column("cap_slip" if math.isfinite(frictions[LOWER][0]) else "unused_slip")
     own, of_cap = COLUMNS[len(BODY_COLUMNS) :], len(BODY_COLUMNS) + len(COLUMNS[-2:])
     return replace(
-        found,
+        model,
         name="coupled",
-        system=kind(*cast("Chain", found.system)),
+        system=kind(*cast("Chain", model.system)),
         columns=(
             *BODY_COLUMNS, *own[CAP_COLUMNS:], *_padded(block.base.columns, BASE_COLUMNS, "block"),
             *_padded(own[:CAP_COLUMNS], of_cap, "cap"),

@@ -176,9 +176,9 @@ class RigidChain(RigidImpulses):
         part, was, body = self.on_base(k), self.body_mode(mode, k), self.state_of(k, state)
         if not part.flies(was.contact):
             return mode
-        now = part.mode_for_contact(part.base.held(was.contact, left), body)
-        now = Mode(now.contact, now.pivot, True)
-        self.find_forces(self.with_body_mode(mode, k, now), state, ground)
+        sliding = part.mode_for_contact(part.base.held(was.contact, left), body)
+        sliding = Mode(sliding.contact, sliding.pivot, True)
+        self.find_forces(self.with_body_mode(mode, k, sliding), state, ground)
         corners = self.bearing_corners(mode)
         for corner in range(2 * self.body_count):
             least = NEARLY_ZERO * self.row_value(corner // 2, at.FORCE_SCALE)
@@ -187,9 +187,12 @@ class RigidChain(RigidImpulses):
         if corners == self.bearing_corners(mode):
             return mode
         parted = self.with_bearing_corners(mode, corners, self.tension_corners(mode) & corners)
-        reach = part.body.reach(part.body.pin(now.pivot), part.body.attitude(body.rotation))
+        reach = part.body.reach(part.body.pin(sliding.pivot), part.body.attitude(body.rotation))
         slip = body.horizontal_velocity - reach.derivative * body.angular_velocity
-        if slip * lift_per_slip(self, part, k, self.with_body_mode(parted, k, now), state) <= 0.0:
+        if (
+            slip * lift_per_slip(self, part, k, self.with_body_mode(parted, k, sliding), state)
+            <= 0.0
+        ):
             return mode
         self.project_onto_contacts(mode, state, memory)
         self.fix_held_points(parted, state, memory)
@@ -310,11 +313,11 @@ class RigidChain(RigidImpulses):
         else:
             self.find_forces(flying, state, ground)
         in_tension = 0 if leaving == 0 else self.tension_corners(mode)
-        found = find_bearing_corners(
+        corners = find_bearing_corners(
             self, flying, closed & ~in_tension, in_tension, before, leaving, state
         )
-        chosen, in_tension = found.chosen, in_tension | found.held
-        if found.admissible == 0 and found.held == 0:
+        chosen, in_tension = corners.chosen, in_tension | corners.held
+        if corners.admissible == 0 and corners.held == 0:
             self.restore_trial_slips(mode, leaving == 0)
             if leaving != 0 and self.bears_alone(before, leaving):
                 chosen, in_tension = before, in_tension | leaving
@@ -328,8 +331,8 @@ class RigidChain(RigidImpulses):
         else:
             new = self.with_deformable_slips(new, state, memory)
         memory[IMPACT_LOSS] += kinetic - self.energies(new, state).kinetic
-        memory[sets + ADMISSIBLE_COUNT] = found.admissible
-        memory[sets + CHOSEN_CORNERS], memory[sets + NEXT_BEST_CORNERS] = chosen, found.next_best
+        memory[sets + ADMISSIBLE_COUNT] = corners.admissible
+        memory[sets + CHOSEN_CORNERS], memory[sets + NEXT_BEST_CORNERS] = chosen, corners.next_best
         return new
 
     @inlined

@@ -44,9 +44,9 @@ class SlippingRigidChain(SlipTrials):
             return
         if not body_mode.slides and self.is_rigid(k) and body_mode.contact & IN_TENSION != 0:
             return
-        found = self.slip_guards(k, mode, state, self.slopes(), self.normal_force(k), size)
-        values[i + HOLD], values[i + SLIP] = found.hold, found.slip
-        changes[i + SLIP] = found.slip_rate
+        guards = self.slip_guards(k, mode, state, self.slopes(), self.normal_force(k), size)
+        values[i + HOLD], values[i + SLIP] = guards.hold, guards.slip
+        changes[i + SLIP] = guards.slip_rate
 
     @kernel
     def switch_body(
@@ -95,8 +95,8 @@ class SlippingRigidChain(SlipTrials):
         As an end lifts off the held point changes, and with it the slips and the corners that bear.
         """
         for k in range(self.body_count):
-            part, now = self.on_base(k), self.body_mode(mode, k)
-            line, contact = part.body.base_line_at(self.state_of(k, state)), now.contact
+            part, body_mode = self.on_base(k), self.body_mode(mode, k)
+            line, contact = part.body.base_line_at(self.state_of(k, state)), body_mode.contact
             waits = self.is_slippery(k) and not part.flies(contact)
             for side in range(2):
                 left = side == 0
@@ -105,7 +105,7 @@ class SlippingRigidChain(SlipTrials):
                     line = with_accelerations(line, rises[0], rises[1])
                     if part.base.will_press(left, line, ()):
                         contact = part.base.waiting(contact, left)
-            mode = self.with_body_mode(mode, k, Mode(contact, now.pivot, now.slides))
+            mode = self.with_body_mode(mode, k, Mode(contact, body_mode.pivot, body_mode.slides))
         return mode
 
     @kernel
@@ -243,13 +243,13 @@ class SlippingRigidChain(SlipTrials):
         self.write_trial_slips(mode)
         flying, in_tension = self.with_bearing_corners(mode, 0, 0), self.tension_corners(mode)
         closed, count, free = before | self.resting_corners(mode, state), 0, mode
-        found = BearingCorners(before, 0, -1, 0)
+        corners = BearingCorners(before, 0, -1, 0)
         for _ in range(self.body_count):
             self.find_forces(flying, state, ground)
-            found = find_bearing_corners(
+            corners = find_bearing_corners(
                 self, flying, closed & ~in_tension, in_tension, before, FRICTION_CHANGED, state
             )
-            if found.admissible > 0 or found.held != 0:
+            if corners.admissible > 0 or corners.held != 0:
                 break
             free = self.release_all(free, state, memory)
             flying = self.with_bearing_corners(free, 0, 0)
@@ -259,8 +259,8 @@ class SlippingRigidChain(SlipTrials):
             before, in_tension, count = jammed.chosen, 0, max(count, jammed.admissible)
             stopped = self.with_bearing_corners(flying, before, 0)
             closed = before | self.resting_corners(stopped, state)
-        ways = found.admissible
-        if found.admissible == 0 and found.held == 0:
+        ways = corners.admissible
+        if corners.admissible == 0 and corners.held == 0:
             self.write_trial_slips(mode)
             self.find_forces(mode, state, ground)
             for k in range(self.body_count):
@@ -268,18 +268,18 @@ class SlippingRigidChain(SlipTrials):
                 starts = self.workspace()[k * BODY_STRIDE + at.STARTING_SENSE]
                 if starts != 0.0:
                     self.workspace()[k * BODY_STRIDE + at.SLIP_SENSE] = starts
-        elif found.held == 0:
+        elif corners.held == 0:
             noise = ROUNDING * self.row_value(0, at.GRAVITY)
             ways += self.count_other_solutions(
-                flying, found.chosen, closed & ~in_tension, noise, state
+                flying, corners.chosen, closed & ~in_tension, noise, state
             )
-        new = self.with_bearing_corners(free, found.chosen, in_tension | found.held)
+        new = self.with_bearing_corners(free, corners.chosen, in_tension | corners.held)
         self.fix_held_points(new, state, memory)
         new = self.with_deformable_slips(new, state, memory)
         # where several sets of impulses are admissible, motion is not unique either
-        memory[sets + ADMISSIBLE_COUNT] = max(ways, count if found.admissible > 0 else 0)
-        memory[sets + CHOSEN_CORNERS] = found.chosen
-        memory[sets + NEXT_BEST_CORNERS] = found.next_best
+        memory[sets + ADMISSIBLE_COUNT] = max(ways, count if corners.admissible > 0 else 0)
+        memory[sets + CHOSEN_CORNERS] = corners.chosen
+        memory[sets + NEXT_BEST_CORNERS] = corners.next_best
         return new
 
     @kernel
@@ -292,14 +292,14 @@ class SlippingRigidChain(SlipTrials):
         """
         kinetic = self.energies(flying, state).kinetic  # places the bodies, too
         set_inertia_loads(self, 0.0, 0.0, self.workspace())
-        found = find_bearing_corners(self, flying, closed, 0, before, JAMMED, state)
-        if found.admissible == 0:
-            return found
+        corners = find_bearing_corners(self, flying, closed, 0, before, JAMMED, state)
+        if corners.admissible == 0:
+            return corners
         self.change_velocities(state)
-        stopped = self.with_bearing_corners(flying, found.chosen, 0)
+        stopped = self.with_bearing_corners(flying, corners.chosen, 0)
         self.fix_held_points(stopped, state, memory)
         memory[IMPACT_LOSS] += kinetic - self.energies(stopped, state).kinetic
         self.project_onto_contacts(stopped, state, memory)
         for k in range(self.body_count):
             self.workspace()[k * BODY_STRIDE + at.STARTING_SENSE] = 0.0
-        return found
+        return corners

@@ -200,16 +200,16 @@ class SlipTrials(SlipperyBases, RigidChain):
         slip, and held ones start to slip if friction cannot hold them.
         """
         self.write_first_slips(mode, subset, impulsive, state)
-        found = Trial(0, math.inf)
+        trial = Trial(0, math.inf)
         most = MAX_SLIP_CHANGES * self.body_count
         # where static friction leads to no solution, kinetic friction decides what is held
         for tries in range(2 * most):
             coefficient = IMPULSIVE if impulsive else STATIC if tries < most else KINETIC
-            found = solve_trial(self, mode, subset, closed, False, impulsive, noise, state)
+            trial = solve_trial(self, mode, subset, closed, False, impulsive, noise, state)
             k = self.correct_one_slip(mode, subset, closed, impulsive, coefficient, noise, state)
             if k < 0:
-                return found
-        return Trial(max(found.violation, 0), math.inf)
+                return trial
+        return Trial(max(trial.violation, 0), math.inf)
 
     @kernel
     def write_first_slips(self, mode: int, subset: int, impulsive: bool, state: Vector) -> int:
@@ -240,10 +240,10 @@ class SlipTrials(SlipperyBases, RigidChain):
         undecided = self.write_first_slips(mode, subset, False, state)
         for combination in range(min(3 ** bit_count(undecided), MAX_COMBINATIONS)):
             self.write_combination(combination, undecided)
-            found = solve_trial(self, mode, subset, closed, False, False, noise, state)
+            trial = solve_trial(self, mode, subset, closed, False, False, noise, state)
             k = self.correct_one_slip(mode, subset, closed, False, STATIC, noise, state)
-            if found.violation < 0 and k < 0:
-                return found
+            if trial.violation < 0 and k < 0:
+                return trial
         return Trial(0, math.inf)
 
     @inlined
@@ -272,7 +272,7 @@ class SlipTrials(SlipperyBases, RigidChain):
         A body that friction can hold, with the slips of the others unchanged, does not count as
         slipping: where only one body may slip there is one combination.
         """
-        work, found, taken = self.workspace(), 0, self.trial_combination()
+        work, solutions, taken = self.workspace(), 0, self.trial_combination()
         undecided = self.write_first_slips(mode, subset, False, state)
         count = min(3 ** bit_count(undecided), MAX_COMBINATIONS)
         for combination in range(count if bit_count(undecided) > 1 else 0):
@@ -287,10 +287,10 @@ class SlipTrials(SlipperyBases, RigidChain):
                     friction = self.friction_coefficient(k, STATIC)
                     counts = held.violation >= 0 or self.exceeds_friction(k, friction, False)
                     work[k * BODY_STRIDE + at.SLIP_SENSE] = slips
-            found += 1 if counts else 0
+            solutions += 1 if counts else 0
         self.write_combination(taken, 2**self.body_count - 1)
         solve_trial(self, mode, subset, closed, False, False, noise, state)
-        return found
+        return solutions
 
     @kernel
     def is_admissible(
@@ -298,10 +298,10 @@ class SlipTrials(SlipperyBases, RigidChain):
     ) -> bool:
         """Whether a set of bearing corners with the present slips is admissible."""
         combination = self.trial_combination()
-        found = solve_trial(self, mode, subset, closed, False, False, noise, state)
+        trial = solve_trial(self, mode, subset, closed, False, False, noise, state)
         k = self.correct_one_slip(mode, subset, closed, False, STATIC, noise, state)
         self.write_combination(combination, 2**self.body_count - 1)
-        return found.violation < 0 and k < 0
+        return trial.violation < 0 and k < 0
 
     @kernel
     def solve_standing(self, mode: int, corners: int, state: Vector) -> None:
@@ -340,11 +340,11 @@ class SlipTrials(SlipperyBases, RigidChain):
                 continue
             work[stopped * BODY_STRIDE + at.SLIP_SENSE] = 0.0
             for _ in range(MAX_SLIP_CHANGES * self.body_count):
-                found = solve_trial(self, mode, subset, closed, False, True, noise, state)
+                trial = solve_trial(self, mode, subset, closed, False, True, noise, state)
                 k = self.correct_one_slip(mode, subset, closed, True, IMPULSIVE, noise, state)
                 if k < 0:
-                    if found.violation < 0 and work[stopped * BODY_STRIDE + at.SLIP_SENSE] == 0.0:
-                        return found
+                    if trial.violation < 0 and work[stopped * BODY_STRIDE + at.SLIP_SENSE] == 0.0:
+                        return trial
                     break
         return Trial(0, math.inf)
 
@@ -441,7 +441,7 @@ class SlipTrials(SlipperyBases, RigidChain):
         spare = MAX_CONSTRAINTS * self.body_count - 1  # a slipping body has no hold: free
         jacobian = spare * CONSTRAINT_STRIDE + at.JACOBIAN
         write_jacobian(self, k, 1.0, 0.0, -reach.derivative, jacobian, work, rows)
-        found = combined_acceleration(self.body_count, k, jacobian, work, rows)
+        acceleration = combined_acceleration(self.body_count, k, jacobian, work, rows)
         if impulsive:
-            return found
-        return found - tangential_coriolis(i, work) - reach.second_derivative * rate * rate
+            return acceleration
+        return acceleration - tangential_coriolis(i, work) - reach.second_derivative * rate * rate

@@ -58,18 +58,22 @@ class SlipperyBases(SlippingBodies):
         """Carry out the switch of an end's contact; return the mode, with the body released."""
         part, was = self.on_base(k), self.body_mode(mode, k)
         line = part.body.base_line_at(self.state_of(k, state))
-        found = part.base.switch(was.contact, left, which, line, ())
-        memory[LAST_EVENT] = found.event
-        if found.crossed:
+        event = part.base.switch(was.contact, left, which, line, ())
+        memory[LAST_EVENT] = event.event
+        if event.crossed:
             # the crossed level is set exactly, so that rounding cannot undo the switch
             self.shift_vertical(k, part.base.level(left, line, ()), 0.0, state)
-        if found.event == SILENT:
-            return self.with_body_mode(mode, k, Mode(found.contact, was.pivot, was.slides))
+        if event.event == SILENT:
+            return self.with_body_mode(mode, k, Mode(event.contact, was.pivot, was.slides))
         new = self.release(k, mode, state, memory)
-        now = part.mode_for_contact(found.contact, self.state_of(k, state))
-        new = self.with_body_mode(new, k, Mode(now.contact, now.pivot, not part.flies(now.contact)))
-        if found.event == IMPACT and part.base.rebound(left) < 1.0:
-            both = part.flies(was.contact) and part.base.is_held(now.contact, not left)
+        new_body_mode = part.mode_for_contact(event.contact, self.state_of(k, state))
+        new = self.with_body_mode(
+            new,
+            k,
+            Mode(new_body_mode.contact, new_body_mode.pivot, not part.flies(new_body_mode.contact)),
+        )
+        if event.event == IMPACT and part.base.rebound(left) < 1.0:
+            both = part.flies(was.contact) and part.base.is_held(new_body_mode.contact, not left)
             new = self.strike(k, left, both, new, state, memory)
         return new
 
@@ -129,15 +133,15 @@ class SlipperyBases(SlippingBodies):
         slip, noise = self.slip_rate(k, mode, state)
         if abs(slip) <= noise:
             slip = 0.0
-        one, other = line.left_lever, line.right_lever
-        rises, slides_left = self.impulse_response(k, 1.0, one, 0.0, mode, state)
-        left_left = rises + one * self.rotation_change(k)
-        mixed = rises + other * self.rotation_change(k)
-        rises, slides_right = self.impulse_response(k, 1.0, other, 0.0, mode, state)
-        right_right = rises + other * self.rotation_change(k)
+        left_lever, right_lever = line.left_lever, line.right_lever
+        rises, slides_left = self.impulse_response(k, 1.0, left_lever, 0.0, mode, state)
+        left_left = rises + left_lever * self.rotation_change(k)
+        mixed = rises + right_lever * self.rotation_change(k)
+        rises, slides_right = self.impulse_response(k, 1.0, right_lever, 0.0, mode, state)
+        right_right = rises + right_lever * self.rotation_change(k)
         rises, slides = self.impulse_response(k, 0.0, 0.0, 1.0, mode, state)
-        left_along = rises + one * self.rotation_change(k)
-        right_along = rises + other * self.rotation_change(k)
+        left_along = rises + left_lever * self.rotation_change(k)
+        right_along = rises + right_lever * self.rotation_change(k)
         gain_left = -(1.0 - base.rebound(True)) * min(line.left_speed, 0.0)
         gain_right = -(1.0 - base.rebound(False)) * min(line.right_speed, 0.0)
         determinant = left_left * right_right - mixed * mixed
@@ -162,7 +166,7 @@ class SlipperyBases(SlippingBodies):
         if right < 0.0:
             return LEFT_ONLY
         self.apply_base_impulses(
-            k, left + right, left * one + right * other, along, slip, mode, state
+            k, left + right, left * left_lever + right * right_lever, along, slip, mode, state
         )
         return 0
 
@@ -230,8 +234,8 @@ class SlipperyBases(SlippingBodies):
         # an impact may have reversed the slip since
         slips = self.with_slip_sense(mode, k, rate) if abs(rate) > noise else mode
         slope = self.find_forces(slips, state, ground)
-        found = self.slip_guards(k, slips, state, slope, 0.0, 1.0)
-        slows = -found.slip_rate * math.sqrt(body.gravity * body.size())
+        guards = self.slip_guards(k, slips, state, slope, 0.0, 1.0)
+        slows = -guards.slip_rate * math.sqrt(body.gravity * body.size())
         if rate * rate >= 2.0 * slows * REST_AMPLITUDE * body.size():
             return mode
         kinetic = self.energies_of_bodies(slips, state).kinetic
@@ -253,17 +257,17 @@ class SlipperyBases(SlippingBodies):
         If the new forces would reverse the switch immediately, the end gets the contact state
         between the two.
         """
-        part, now, event = self.on_base(k), self.body_mode(mode, k), memory[LAST_EVENT]
-        if event not in (SEPARATION, REENGAGEMENT) or part.flies(now.contact):
+        part, body_mode, event = self.on_base(k), self.body_mode(mode, k), memory[LAST_EVENT]
+        if event not in (SEPARATION, REENGAGEMENT) or part.flies(body_mode.contact):
             return mode
         rises = self.end_accelerations(k, mode, state, ground)
         line = with_accelerations(
             part.body.base_line_at(self.state_of(k, state)), rises[0], rises[1]
         )
         grows = part.base.will_press(left, line, ())
-        contact = now.contact
+        contact = body_mode.contact
         if event == SEPARATION and grows and part.base.presses(contact, left, line, ()):
             contact = part.base.waiting(contact, left)
         elif event == REENGAGEMENT and not grows:
             contact = part.base.unpressed(contact, left)
-        return self.with_body_mode(mode, k, Mode(contact, now.pivot, now.slides))
+        return self.with_body_mode(mode, k, Mode(contact, body_mode.pivot, body_mode.slides))

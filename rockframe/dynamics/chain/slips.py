@@ -138,14 +138,14 @@ class SlippingBodies(Chain):
 
         Or leaves its base, or a part of it, as friction changes.
         """
-        part, was, now = self.on_base(k), self.body_mode(old, k), self.body_mode(new, k)
-        if part.flies(now.contact):
+        part, old_mode, new_mode = self.on_base(k), self.body_mode(old, k), self.body_mode(new, k)
+        if part.flies(new_mode.contact):
             return events.SEPARATION
-        if was.slides != now.slides:
-            return events.SLIP if now.slides else events.STICK
-        if now.slides and self.sense(old, k) != self.sense(new, k):
+        if old_mode.slides != new_mode.slides:
+            return events.SLIP if new_mode.slides else events.STICK
+        if new_mode.slides and self.sense(old, k) != self.sense(new, k):
             return events.REVERSAL
-        stands = part.contact_state(was) == part.contact_state(now)
+        stands = part.contact_state(old_mode) == part.contact_state(new_mode)
         return SILENT if stands else events.UPLIFT
 
     @inlined
@@ -274,9 +274,9 @@ class SlippingBodies(Chain):
         """Return slip at the end of a run, and largest slips to the left and right [m]."""
         mode, state, memory = ending.mode, ending.state, ending.memory.copy()
         self.update_peak_slips(mode, state, memory)
-        kept = memory[self.slip_memory(k) :]
+        slips = memory[self.slip_memory(k) :]
         residual = self.slip_of(k, mode, state, memory)
-        return residual, float(kept[PEAK_LEFT]), float(kept[PEAK_RIGHT])
+        return residual, float(slips[PEAK_LEFT]), float(slips[PEAK_RIGHT])
 
 
 def friction_numbers(frictions: Sequence[tuple[float, float, float]]) -> Vector:

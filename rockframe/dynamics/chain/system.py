@@ -42,10 +42,10 @@ class Chain(MovingBodies):
     @kernel
     def some_end_slides(self, mode: int) -> bool:
         """Whether an end of some body is in sliding contact."""
-        found = False
+        slides = False
         for k in range(self.body_count):
-            found |= self.body_mode(mode, k).slides and not self.is_slippery(k)
-        return found
+            slides |= self.body_mode(mode, k).slides and not self.is_slippery(k)
+        return slides
 
     @kernel
     def without_sliding(self, mode: int) -> int:
@@ -63,9 +63,9 @@ class Chain(MovingBodies):
         values, changes = self.guard_workspace(0), self.guard_workspace(1)
         slides = self.some_end_slides(mode)
         for k in range(self.body_count):
-            found = self.guards_on_base(k, slides, mode, state, slope, ground)
-            put(found.values, GUARDS * k, values)
-            put(found.changes, GUARDS * k, changes)
+            guards = self.guards_on_base(k, slides, mode, state, slope, ground)
+            put(guards.values, GUARDS * k, values)
+            put(guards.changes, GUARDS * k, changes)
         return Guards(values, changes)
 
     @inlined
