@@ -132,8 +132,10 @@ def bind(
     """
     structure, bundle = structure_of(bundle), _with_own_arrays(bundle)
     return tuple(
-        BoundFunction(_bound_source(one, structure, False, rarely_called), bundle, fallback_for)
-        for one in functions
+        BoundFunction(
+            _bound_source(function, structure, False, rarely_called), bundle, fallback_for
+        )
+        for function in functions
     )
 
 

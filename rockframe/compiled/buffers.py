@@ -182,8 +182,8 @@ class _Get(templates.AbstractTemplate):
 
     def generic(self, arguments: Any, keywords: Any) -> Any:
         buffer, index = arguments
-        if isinstance(buffer, BufferType) and (found := _index_type(buffer, index)):
-            return buffer.dtype(buffer, found)
+        if isinstance(buffer, BufferType) and (index_type := _index_type(buffer, index)):
+            return buffer.dtype(buffer, index_type)
         return None
 
 
@@ -201,9 +201,9 @@ class _Set(templates.AbstractTemplate):
         if (
             isinstance(buffer, BufferType)
             and buffer.writeable
-            and (found := _index_type(buffer, index))
+            and (index_type := _index_type(buffer, index))
         ):
-            return numba.void(buffer, found, buffer.dtype)
+            return numba.void(buffer, index_type, buffer.dtype)
         return None
 
 
@@ -245,10 +245,10 @@ def _index_type(buffer: BufferType, index: Any) -> Any:
     if buffer.dimensions == 1:
         return numba.intp if isinstance(index, numba.types.Integer) else None
     numbers = index if isinstance(index, numba.types.BaseTuple) else ()
-    whole = len(numbers) == buffer.dimensions and all(
+    is_element = len(numbers) == buffer.dimensions and all(
         isinstance(number, numba.types.Integer) for number in numbers
     )
-    return numba.types.UniTuple(numba.intp, buffer.dimensions) if whole else None
+    return numba.types.UniTuple(numba.intp, buffer.dimensions) if is_element else None
 
 
 @extending.overload(language.constant, strict=False, jit_options=_INLINED)

@@ -51,8 +51,8 @@ class _Compiled(numba.types.Dispatcher):
 
     def get_call_type(self, context: Any, arguments: Any, keywords: Any) -> Any:
         """Return the types of a call; a constant argument has the type of its kind of number."""
-        alike = [numba.types.unliteral(each) for each in arguments]
-        named = {name: numba.types.unliteral(each) for name, each in keywords.items()}
+        alike = [numba.types.unliteral(argument) for argument in arguments]
+        named = {name: numba.types.unliteral(argument) for name, argument in keywords.items()}
         return super().get_call_type(context, alike, named)
 
 
@@ -87,14 +87,14 @@ def _register_method(function: Callable[..., Any]) -> None:
 
         def generic(self, arguments: Any, keywords: Any) -> Any:
             kind = self.context.resolve_value_type(function)
-            found = kind.get_call_type(self.context, (self.this, *arguments), keywords)
-            return found and found.as_method()
+            call_type = kind.get_call_type(self.context, (self.this, *arguments), keywords)
+            return call_type and call_type.as_method()
 
     @extending.lower_builtin(Call.key, numba.types.BaseNamedTuple, _ANYTHING)
     def call(context: Any, builder: Any, signature: Any, values: Any) -> Any:
         kind = context.typing_context.resolve_value_type(function)
-        found = kind.get_call_type(context.typing_context, signature.args, {})
-        code = context.get_function(kind, found)
+        call_type = kind.get_call_type(context.typing_context, signature.args, {})
+        code = context.get_function(kind, call_type)
         context.add_linking_libs(getattr(code, "libs", ()))
         return code(builder, values)
 
@@ -108,8 +108,8 @@ class _MethodsOfTuples(templates.AttributeTemplate):
     key = numba.types.BaseNamedTuple
 
     def generic_resolve(self, kind: Any, name: str) -> Any:
-        found = None if name in kind.fields else getattr(kind.instance_class, name, None)
-        call = _methods.get(found) if callable(found) else None
+        attribute = None if name in kind.fields else getattr(kind.instance_class, name, None)
+        call = _methods.get(attribute) if callable(attribute) else None
         return call and numba.types.BoundFunction(call, kind)
 
 
@@ -148,8 +148,8 @@ def _call(_: Any, function: Any, arguments: Any) -> Any:
 
     def code(context: Any, builder: Any, signature: Any, values: Any) -> Any:
         converted = [
-            context.cast(builder, builder.extract_value(values[1], i), found, expected)
-            for i, (found, expected) in enumerate(zip(arguments, argument_types, strict=True))
+            context.cast(builder, builder.extract_value(values[1], i), kind, expected)
+            for i, (kind, expected) in enumerate(zip(arguments, argument_types, strict=True))
         ]
         types = [context.get_value_type(expected) for expected in argument_types]
         pointer = ir.FunctionType(context.get_value_type(result_type), types).as_pointer()

@@ -90,8 +90,8 @@ def _as_python(function: Callable[..., Any]) -> Callable[..., Any]:
 
 def table(values: Any) -> Vector:
     """Return a table of constants, of one or two dimensions, in the form that is read fastest."""
-    kept = np.array(values, dtype=np.float64)
-    return kept if COMPILED else as_memoryviews(kept)
+    array = np.array(values, dtype=np.float64)
+    return array if COMPILED else as_memoryviews(array)
 
 
 _NO_REASONS: Final = ("Failed in", "- Resolution failure", "None")
@@ -225,12 +225,12 @@ class Entry:
         if is_a_moment or self._has_failed(structure, sources):
             return None
         key = structure, *map(id, sources)
-        found = self._compilations.get(key)
-        if found is None:
-            found = self._compilations[key] = BackgroundCompilation(
+        compilation = self._compilations.get(key)
+        if compilation is None:
+            compilation = self._compilations[key] = BackgroundCompilation(
                 jobs, [source.job for source in rare]
             )
-        return found
+        return compilation
 
     def _has_failed(self, structure: tuple[Any, ...], sources: list[BoundSource]) -> bool:
         failed = structure in self._routines and self._routines[structure] is None
@@ -256,10 +256,10 @@ class Entry:
         jobs = self._jobs(structure, sources)
         try:
             *codes, routine = compile_all(jobs)
-        except NotCompiledError as found:
-            _warn_not_compiled(jobs[found.place].function, found.problem)
-            if found.place < len(missing):  # a bound function: other systems can use the entry
-                missing[found.place].failed = True
+        except NotCompiledError as error:
+            _warn_not_compiled(jobs[error.place].function, error.problem)
+            if error.place < len(missing):  # a bound function: other systems can use the entry
+                missing[error.place].failed = True
             else:
                 self._routines[structure] = None
             return None
@@ -289,20 +289,20 @@ def _compile_when_due(source: BoundSource, patience: float) -> None:
             if not compilation.is_due(at_once=True):
                 return
         (source.code,) = compile_all([job])
-    except NotCompiledError as found:
-        _warn_not_compiled(job.function, found.problem)
+    except NotCompiledError as error:
+        _warn_not_compiled(job.function, error.problem)
         source.failed, source.is_rarely_called = True, False
     else:
         source.address = source.code.address
 
 
-def is_worth_calling(one: BoundFunction) -> bool:
+def is_worth_calling(function: BoundFunction) -> bool:
     """Whether to call a function for which another one, compiled already but slower, can stand in.
 
     It is called if it has machine code, if nothing has, and if all is compiled before it runs. It
     is compiled when the other one has taken as long as that takes.
     """
-    source = one.source
+    source = function.source
     if source.address or not COMPILED or not _CALLS_BACK:
         return True
     from rockframe.compiled.parallel import START_AFTER

@@ -238,7 +238,7 @@ class Job:
 def estimate_seconds(jobs: Sequence[Job]) -> float:
     """Estimate how long jobs take one after another; functions they share count once [s]."""
     functions = set[Any]().union(*(job.calls for job in jobs))
-    return _SECONDS_OF_BYTE * sum(len(each.__code__.co_code) for each in functions)
+    return _SECONDS_OF_BYTE * sum(len(function.__code__.co_code) for function in functions)
 
 
 @contextmanager
@@ -250,15 +250,15 @@ def cached_operators() -> Generator[None]:
     """
     kind, numbers = numba.types.Function, (numba.types.Number, numba.types.Boolean)
     resolve = kind.get_call_type
-    found: dict[Any, Any] = {}
+    resolved: dict[Any, Any] = {}
 
     def cached(operator: Any, context: Any, arguments: Any, keywords: Any) -> Any:
-        if keywords or not all(isinstance(each, numbers) for each in arguments):
+        if keywords or not all(isinstance(argument, numbers) for argument in arguments):
             return resolve(operator, context, arguments, keywords)
         key = operator, tuple(arguments)
-        if key not in found:
-            found[key] = resolve(operator, context, arguments, keywords)
-        return found[key]
+        if key not in resolved:
+            resolved[key] = resolve(operator, context, arguments, keywords)
+        return resolved[key]
 
     kind.get_call_type = cached
     try:
@@ -270,22 +270,26 @@ def cached_operators() -> Generator[None]:
 def classes_of_structure(structure: tuple[Any, ...]) -> set[type]:
     """Return the classes of a tuple and of the tuples in it."""
     kind, *parts = structure
-    found = {kind} if isinstance(kind, type) else set[type]()
-    return found.union(*(classes_of_structure(part) for part in parts if isinstance(part, tuple)))
+    classes = {kind} if isinstance(kind, type) else set[type]()
+    return classes.union(*(classes_of_structure(part) for part in parts if isinstance(part, tuple)))
 
 
 def callees_of(function: Any, kinds: set[type]) -> set[Any]:
     """Return a function and all marked ones it may call; methods of `kinds` by their names."""
-    found, waiting = set[Any](), [function]
+    callees, waiting = set[Any](), [function]
     while waiting:
         caller = waiting.pop()
-        if caller in found:
+        if caller in callees:
             continue
-        found.add(caller)
+        callees.add(caller)
         for name in caller.__code__.co_names:
             named = [caller.__globals__.get(name), *(getattr(kind, name, None) for kind in kinds)]
-            waiting += [each for each in named if inspect.isfunction(each) and each in KERNELS]
-    return found
+            waiting += [
+                candidate
+                for candidate in named
+                if inspect.isfunction(candidate) and candidate in KERNELS
+            ]
+    return callees
 
 
 def _warn_once(text: str) -> None:

@@ -59,7 +59,8 @@ class _LateLibrary(_codegen.JITCodeLibrary):
     def get_pointer_to_function(self, name: str) -> int:
         """Return the address of a function; 0 where this library has none of that name."""
         if not self._finalized and not any(
-            name == each.name and not each.is_declaration for each in self._final_module.functions
+            name == function.name and not function.is_declaration
+            for function in self._final_module.functions
         ):
             return 0
         address: int = super().get_pointer_to_function(name)
@@ -92,9 +93,9 @@ class _LateLibrary(_codegen.JITCodeLibrary):
             return super()._get_module_for_linking()
         if self._shared_module is None:
             self._shared_module = self._final_module.clone()
-            for each in self._shared_module.functions:
-                if not each.is_declaration and each.linkage.name == "external":
-                    each.linkage = "linkonce_odr"
+            for function in self._shared_module.functions:
+                if not function.is_declaration and function.linkage.name == "external":
+                    function.linkage = "linkonce_odr"
         return self._shared_module
 
 

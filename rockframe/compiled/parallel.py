@@ -204,14 +204,14 @@ def compile_all_of(description: bytes) -> None:
 
 
 def _jobs_in(description: bytes) -> list[Job]:
-    found = list[Job]()
+    jobs = list[Job]()
     for module, name, structure, *kind in pickle.loads(description):  # noqa: S301
         function: Any = import_module(module)
         for part in name.split("."):
             function = getattr(function, part)
         source = getattr(function, "source", function)  # of an entry
-        found.append(Job(source, structure, *kind))
-    return found
+        jobs.append(Job(source, structure, *kind))
+    return jobs
 
 
 def _description_of(job: Job) -> tuple[Any, ...]:
@@ -241,7 +241,7 @@ _compilers: Final[list["subprocess.Popen[bytes]"]] = []
 
 def _compilers_run() -> bool:
     """Whether processes that this one started compile in the background."""
-    _compilers[:] = [one for one in _compilers if one.poll() is None]
+    _compilers[:] = [compiler for compiler in _compilers if compiler.poll() is None]
     return bool(_compilers)
 
 

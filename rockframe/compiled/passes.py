@@ -32,7 +32,9 @@ def makes_only_numbers(function: Any) -> bool:
     """Whether a function makes only numbers and tuples."""
     code = function.__code__
     named = (function.__globals__.get(name) for name in code.co_names)
-    return _EXCLUDED_OPCODES.isdisjoint(each.opname for each in get_instructions(code)) and not any(
+    return _EXCLUDED_OPCODES.isdisjoint(
+        instruction.opname for instruction in get_instructions(code)
+    ) and not any(
         str(getattr(value, name, "")).startswith(("numpy", "numba"))
         for value in named
         for name in ("__name__", "__module__")
@@ -41,7 +43,7 @@ def makes_only_numbers(function: Any) -> bool:
 
 def raises_exceptions(function: Any) -> bool:
     """Whether a function has statements that raise exceptions."""
-    return any(each.opname == "RAISE_VARARGS" for each in get_instructions(function))
+    return any(instruction.opname == "RAISE_VARARGS" for instruction in get_instructions(function))
 
 
 class PlainPasses(_compiler.CompilerBase):
@@ -50,6 +52,10 @@ class PlainPasses(_compiler.CompilerBase):
     def define_pipelines(self) -> list[Any]:
         """Return the passes, in numba's order."""
         passes = _compiler.DefaultPassBuilder.define_nopython_pipeline(self.state)
-        passes.passes = [one for one in passes.passes if one[0].name() not in _OMITTED_PASSES]
+        passes.passes = [
+            compiler_pass
+            for compiler_pass in passes.passes
+            if compiler_pass[0].name() not in _OMITTED_PASSES
+        ]
         passes.finalize()
         return [passes]

@@ -74,11 +74,11 @@ def _imported(module: ModuleType, source: bytes) -> Iterator[str]:
     for node in ast.walk(ast.parse(source)):
         names: list[str] = []
         if isinstance(node, ast.Import):
-            names = [each.name for each in node.names]
+            names = [alias.name for alias in node.names]
         elif isinstance(node, ast.ImportFrom):
             home = "." * node.level + (node.module or "")
             home = resolve_name(home, module.__package__) if node.level else home
-            names = [home, *(f"{home}.{each.name}" for each in node.names)]
+            names = [home, *(f"{home}.{alias.name}" for alias in node.names)]
         for name in names:
             file = getattr(sys.modules.get(name), "__file__", None)
             if file is not None and not any(map(Path(file).is_relative_to, _INSTALLED)):
@@ -228,8 +228,8 @@ def lock_while_compiling(file: Path, waiting: Callable[[], bool]) -> Generator[N
 
 def remove_code(file: Path) -> None:
     """Remove the machine code of a module."""
-    for kept in (file.parent / "__pycache__").glob(f"{file.stem}.*.nb[ci]"):
-        kept.unlink(missing_ok=True)
+    for code_file in (file.parent / "__pycache__").glob(f"{file.stem}.*.nb[ci]"):
+        code_file.unlink(missing_ok=True)
 
 
 def cache_folders() -> list[Path]:

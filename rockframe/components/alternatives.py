@@ -70,9 +70,11 @@ class OneOf:
             msg = f"{owner}: give {heads}; {'neither' if pair else 'none'} was given"
             raise ComponentError(msg)
         for way in self.ways:
-            there = [name for name in way if values.get(name) is not None]
-            if 0 < len(there) < len(way):
-                found = f"only {' and '.join(there)} {'was' if len(there) == 1 else 'were'} given"
+            present = [name for name in way if values.get(name) is not None]
+            if 0 < len(present) < len(way):
+                found = (
+                    f"only {' and '.join(present)} {'was' if len(present) == 1 else 'were'} given"
+                )
                 msg = f"{owner}: {' and '.join(way)} go together; {found}"
                 raise ComponentError(msg)
 

@@ -35,8 +35,8 @@ _INDENT: Final = "    "
 def _parameter_row(parameter: Declared[Any, Any]) -> str:
     optional = "" if parameter.default is REQUIRED else ", optional"
     unit = f"[{parameter.unit}]"
-    whole = parameter.words.replace(unit, unit.replace(" ", "~"))  # not broken between lines
-    lines = fill(whole, _WIDTH, initial_indent=_INDENT, subsequent_indent=_INDENT)
+    text = parameter.words.replace(unit, unit.replace(" ", "~"))  # not broken between lines
+    lines = fill(text, _WIDTH, initial_indent=_INDENT, subsequent_indent=_INDENT)
     words = lines.replace(unit.replace(" ", "~"), unit)
     return f"{parameter.name} : {parameter.written_as}{optional}\n{words}"
 
@@ -86,7 +86,11 @@ class Component(Immutable):
 
     def __init_subclass__(cls, **options: Any) -> None:
         super().__init_subclass__(**options)
-        own = {name: one for name, one in vars(cls).items() if isinstance(one, Declared)}
+        own = {
+            name: parameter
+            for name, parameter in vars(cls).items()
+            if isinstance(parameter, Declared)
+        }
         for name in own:
             if hasattr(Component, name):
                 msg = f"{cls.__qualname__}: {name!r} is reserved: every component has it"
@@ -124,7 +128,10 @@ class Component(Immutable):
         owner = self._owner(arguments)
         self._check(arguments, owner)
         self._set_values(
-            {name: one.accept(arguments[name], owner) for name, one in self._declared.items()}
+            {
+                name: parameter.accept(arguments[name], owner)
+                for name, parameter in self._declared.items()
+            }
         )
 
     def _set_values(self, values: Mapping[str, object]) -> None:
@@ -150,19 +157,19 @@ class Component(Immutable):
     def _cautions(self) -> list[str]:
         """Return a text for each unusual value."""
         values = vars(self.given)
-        found = [
-            one.caution(values[name])
-            for name, one in self._declared.items()
+        cautions = [
+            parameter.caution(values[name])
+            for name, parameter in self._declared.items()
             if values[name] is not None
         ]
-        return [words for words in found if words is not None]
+        return [words for words in cautions if words is not None]
 
     def _arguments(self) -> dict[str, float | str]:
         """Return arguments of the constructor for an equal component."""
         values = vars(self.given)
         written = {
-            name: None if values[name] is None else one.write(values[name])
-            for name, one in self._declared.items()
+            name: None if values[name] is None else parameter.write(values[name])
+            for name, parameter in self._declared.items()
         }
         return {name: value for name, value in written.items() if value is not None}
 
@@ -341,18 +348,18 @@ class Component(Immutable):
         for name in values:
             self._check_name(name, self._declared)
         removed = dict.fromkeys(
-            name for each in self.alternatives for name in each.displaced(values)
+            name for alternative in self.alternatives for name in alternative.displaced(values)
         )
         changed = {**vars(self.given), **removed, **values}
         owner = self._owner(changed)
         for name, value in values.items():
-            one = self._declared[name]
-            holds: Any = isfinite if one.condition is None else one.condition.holds
+            parameter = self._declared[name]
+            holds: Any = isfinite if parameter.condition is None else parameter.condition.holds
             if not isinstance(value, float | CaseArray) or not holds(value):
                 # raises the error for a wrong value
-                plain = isinstance(value, str) or one.measure is None
-                written = value if plain else one.write(value)
-                changed[name] = one.read(written, owner)
+                plain = isinstance(value, str) or parameter.measure is None
+                written = value if plain else parameter.write(value)
+                changed[name] = parameter.read(written, owner)
         part = object.__new__(type(self))
         part._check(changed, owner)
         part._set_values(changed)
@@ -410,8 +417,10 @@ COMPONENT_CLASSES: Final[dict[str, type[Component]]] = {}
 
 def _register(kind: type[Component]) -> None:
     """Make a class known by its name."""
-    known = COMPONENT_CLASSES.setdefault(kind.__name__, kind)
-    full, other = (f"{one.__module__}.{one.__qualname__}" for one in (kind, known))
+    registered = COMPONENT_CLASSES.setdefault(kind.__name__, kind)
+    full, other = (
+        f"{component.__module__}.{component.__qualname__}" for component in (kind, registered)
+    )
     if full != other:
         msg = (
             f"{full}: another component has this name, {other}; descriptions refer to components "
@@ -427,7 +436,7 @@ def changed_arguments(
     alternatives: tuple[OneOf, ...],
 ) -> dict[str, Any]:
     """Return arguments with changes, without those that the changes replace."""
-    removed = {name for each in alternatives for name in each.displaced(changes)}
+    removed = {name for alternative in alternatives for name in alternative.displaced(changes)}
     return {**{name: value for name, value in arguments.items() if name not in removed}, **changes}
 
 
@@ -440,21 +449,21 @@ def _with_defaults(kind: type[Component], values: Mapping[str, object]) -> dict[
             raise unexpected_argument(call, name, declared)
     missing = [
         repr(name)
-        for name, one in declared.items()
-        if one.default is REQUIRED and name not in values
+        for name, parameter in declared.items()
+        if parameter.default is REQUIRED and name not in values
     ]
     if missing:
         count = f"{len(missing)} required keyword-only argument{'s' if len(missing) > 1 else ''}"
         msg = f"{call} missing {count}: {' and '.join(missing)}"
         raise ArgumentError(msg)
-    defaults = {name: _default(one, None) for name, one in declared.items()}
+    defaults = {name: _default(parameter, None) for name, parameter in declared.items()}
     return {**defaults, **values}
 
 
-def _default(one: Declared[Any, Any], required: object) -> object:
-    if one.default is REQUIRED:
+def _default(parameter: Declared[Any, Any], required: object) -> object:
+    if parameter.default is REQUIRED:
         return required
-    return None if one.default is DERIVED else one.default
+    return None if parameter.default is DERIVED else parameter.default
 
 
 def _constructor(kind: type[Component]) -> Any:
@@ -474,10 +483,10 @@ def _constructor(kind: type[Component]) -> Any:
         Argument(
             name,
             Argument.KEYWORD_ONLY,
-            default=_default(one, Argument.empty),
-            annotation=one.annotation,
+            default=_default(parameter, Argument.empty),
+            annotation=parameter.annotation,
         )
-        for name, one in kind._declared.items()  # pyright: ignore[reportPrivateUsage]
+        for name, parameter in kind._declared.items()  # pyright: ignore[reportPrivateUsage]
     ]
     this = Argument("self", Argument.POSITIONAL_OR_KEYWORD)
     __init__.__signature__ = Signature([this, *arguments])  # type: ignore[attr-defined]

@@ -340,8 +340,8 @@ class Block(Component):
             mu = numbers.mass * diagonal * (diagonal / (4.0 * numbers.inertia))
         elif numbers.shape_factor is None and height != 0.5 * numbers.height:
             # the inertia of the solid rectangle by default
-            whole = hypot(numbers.width, numbers.height)
-            mu *= (diagonal / whole) ** 2
+            full_diagonal = hypot(numbers.width, numbers.height)
+            mu *= (diagonal / full_diagonal) ** 2
         si = BlockSI(numbers.width, numbers.height, numbers.mass, mu, height, eccentricity)
         check_representable(si, owner)
         return si

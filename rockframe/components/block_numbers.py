@@ -91,10 +91,10 @@ def maximum_restitutions(body: BodyGeometry) -> tuple[float, float]:
     mu, e = body.shape_factor, body.eccentricity
     b, h = body.half_width, body.centre_height
     square = b * b + h * h
-    kept = 1.0 + mu * (cos(2.0 * atan2(b, h)) + e * e / square)
+    ratio = 1.0 + mu * (cos(2.0 * atan2(b, h)) + e * e / square)
     onto_left = 1.0 + mu * (1.0 + e * (e + 2.0 * b) / square)
     onto_right = 1.0 + mu * (1.0 + e * (e - 2.0 * b) / square)
-    return kept / onto_left, kept / onto_right
+    return ratio / onto_left, ratio / onto_right
 
 
 def check_centre_of_mass(

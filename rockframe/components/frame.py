@@ -281,7 +281,7 @@ class FrameEquivalent(Block):
 
     def _shapes(self) -> list[Polygon]:
         members = member_outlines(self.members)
-        return [*super()._shapes(), *(Polygon("member", one) for one in members)]
+        return [*super()._shapes(), *(Polygon("member", outline) for outline in members)]
 
     @property
     def depth(self) -> Quantity | None:

@@ -212,13 +212,13 @@ def make_building(
             CentreOfMass, centre_of_mass, owner=owner, name="centre_of_mass"
         )
     if members is None:
-        found = _regular_building(dimensions, owner, assumed_centre)
+        building = _regular_building(dimensions, owner, assumed_centre)
     else:
-        found = _building_of_members(members, dimensions, owner, assumed_centre)
+        building = _building_of_members(members, dimensions, owner, assumed_centre)
     if assumed_centre is not default:
-        found.arguments["centre_of_mass"] = str(assumed_centre)
-    found.check(owner)
-    return found
+        building.arguments["centre_of_mass"] = str(assumed_centre)
+    building.check(owner)
+    return building
 
 
 def _regular_building(

@@ -173,25 +173,28 @@ class Member(Component):
 
     def _check(self, values: Mapping[str, object], owner: str) -> None:
         words = ("mass", "density", "width", "height", "depth", "inertia")
-        there = {word for word in words if values[word] is not None}
+        present = {word for word in words if values[word] is not None}
         rules = (
-            (("mass" in there) is not ("density" in there), "give mass or density, exactly one"),
             (
-                "density" not in there or {"width", "height", "depth"} <= there,
+                ("mass" in present) is not ("density" in present),
+                "give mass or density, exactly one",
+            ),
+            (
+                "density" not in present or {"width", "height", "depth"} <= present,
                 "density needs width, height and depth",
             ),
             (
-                there & {"width", "height", "inertia"} in ({"width", "height"}, {"inertia"}),
+                present & {"width", "height", "inertia"} in ({"width", "height"}, {"inertia"}),
                 "give width and height, or inertia (0 kg*m^2 for a point mass)",
             ),
             (
-                not {"depth", "inertia"} <= there,
+                not {"depth", "inertia"} <= present,
                 "depth goes with width and height, not with inertia",
             ),
         )
         for holds, rule in rules:
             if not holds:
-                found = ", ".join(sorted(there)) or "none of them"
+                found = ", ".join(sorted(present)) or "none of them"
                 msg = f"{owner}: {rule}; got {found}"
                 raise ComponentError(msg)
 
@@ -216,9 +219,9 @@ class Member(Component):
 def member_outlines(members: Iterable[Member]) -> list[list[tuple[float, float]]]:
     """Return the corners of the members whose sizes are known [m]."""
     return [
-        rectangle(0.5 * one.width, one.height, one.x, one.y - 0.5 * one.height)
-        for one in (member.si for member in members)
-        if one.width is not None and one.height is not None
+        rectangle(0.5 * numbers.width, numbers.height, numbers.x, numbers.y - 0.5 * numbers.height)
+        for numbers in (member.si for member in members)
+        if numbers.width is not None and numbers.height is not None
     ]
 
 

@@ -89,16 +89,16 @@ class StoreyHeights(Declared[Quantity, Missing]):
 
     def read(self, value: object, owner: str) -> tuple[float, ...]:
         """Convert every height to SI units."""
-        each: Any = value.split(";") if isinstance(value, str) else value
+        heights: Any = value.split(";") if isinstance(value, str) else value
         try:
-            each = list(each)
+            heights = list(heights)
         except TypeError:  # one value; a scalar Quantity even calls itself iterable
-            each = [value]
-        if not each:
+            heights = [value]
+        if not heights:
             _refuse("storey_heights is empty; give the height of every storey")
         return tuple(
-            to_si(one, LENGTH, owner=owner, name=f"{self.name}[{k}]", condition=POSITIVE)
-            for k, one in enumerate(each)
+            to_si(height, LENGTH, owner=owner, name=f"{self.name}[{k}]", condition=POSITIVE)
+            for k, height in enumerate(heights)
         )
 
     def write(self, value: tuple[float, ...]) -> str:

@@ -58,7 +58,7 @@ class Link(Component):
         -------
         tuple of str
         """
-        return tuple(one for one in super().parameters() if one not in ("on_body", "to_body"))
+        return tuple(name for name in super().parameters() if name not in ("on_body", "to_body"))
 
 
 def _body_parameter() -> Count[int]:

@@ -364,9 +364,9 @@ class Count(Declared[int, Default]):
         """Read the number."""
         number = value if not isinstance(value, bool) else None
         if isinstance(number, int | np.integer | float) and 1 <= number <= MAX_COUNT:
-            whole = int(number)
-            if whole == number:
-                return whole
+            count = int(number)
+            if count == number:
+                return count
         msg = f"{owner}: {self.name} must be a whole number from 1 on, got {short_repr(value)}"
         raise ComponentError(msg)
 
@@ -389,7 +389,7 @@ class Position(Declared[tuple[Quantity, Quantity], Missing]):
         """Convert to SI units."""
         written = _POSITION.fullmatch(value) if isinstance(value, str) else None
         if written is not None:
-            value = tuple(f"{one} m" for one in written.groups())
+            value = tuple(f"{coordinate} m" for coordinate in written.groups())
         pair: list[Any] = list(value) if isinstance(value, tuple | list) else []
         if len(pair) != 2:
             msg = (
@@ -398,7 +398,8 @@ class Position(Declared[tuple[Quantity, Quantity], Missing]):
             )
             raise ComponentError(msg)
         x, y = (
-            to_si(one, LENGTH, owner=owner, name=f"{self.name}[{k}]") for k, one in enumerate(pair)
+            to_si(coordinate, LENGTH, owner=owner, name=f"{self.name}[{k}]")
+            for k, coordinate in enumerate(pair)
         )
         return x, y
 

@@ -183,7 +183,7 @@ class RockingFrame(Component):
         return hash(repr(self))
 
     def _shapes(self) -> list[Polygon]:
-        return [Polygon("member", one) for one in frame_outlines(self.si)]
+        return [Polygon("member", outline) for outline in frame_outlines(self.si)]
 
 
 def frame_outlines(si: RockingFrameSI) -> list[list[tuple[float, float]]]:

@@ -117,19 +117,19 @@ class Stack(Component):
     @property
     def bodies(self) -> tuple[Block, ...]:
         """The bodies, from the top down."""
-        found: tuple[Block, ...] = self.given.bodies
-        return found
+        bodies: tuple[Block, ...] = self.given.bodies
+        return bodies
 
     @property
     def interfaces(self) -> tuple[Component, ...]:
         """The bases between the bodies, from the top down."""
-        found: tuple[Component, ...] = self.given.interfaces
-        return found
+        interfaces: tuple[Component, ...] = self.given.interfaces
+        return interfaces
 
     @property
     def offsets(self) -> tuple[Quantity, ...]:
         """Distance of each base but the lowest to the right of that of the body below [m]."""
-        return tuple(quantity(one, LENGTH) for one in self.given.offsets)
+        return tuple(quantity(offset, LENGTH) for offset in self.given.offsets)
 
     def cautions(self) -> list[str]:
         """Return the warnings about unusual values of bodies and interfaces.
@@ -138,7 +138,7 @@ class Stack(Component):
         -------
         list of str
         """
-        return [text for one in (*self.bodies, *self.interfaces) for text in one.cautions()]
+        return [text for part in (*self.bodies, *self.interfaces) for text in part.cautions()]
 
     def parameters(self) -> tuple[str, ...]:
         """Name the numbers of bodies and interfaces other than zero.
@@ -209,14 +209,14 @@ class Stack(Component):
                 call = f"{type(self).__name__}.replace()"
                 raise unexpected_argument(call, name, values)
         bodies, interfaces, offsets = (changes.get(name, old) for name, old in values.items())
-        kept = checked_list(bodies, owner="Stack", name="bodies", of="blocks")
-        return type(self)(*kept, interfaces=interfaces, offsets=offsets)
+        checked = checked_list(bodies, owner="Stack", name="bodies", of="blocks")
+        return type(self)(*checked, interfaces=interfaces, offsets=offsets)
 
     def _arguments(self) -> dict[str, Any]:
         return {
-            "bodies": [one.to_dict() for one in self.bodies],
-            "interfaces": [one.to_dict() for one in self.interfaces],
-            "offsets": [quantity_text(one, LENGTH) for one in self.given.offsets],
+            "bodies": [body.to_dict() for body in self.bodies],
+            "interfaces": [interface.to_dict() for interface in self.interfaces],
+            "offsets": [quantity_text(offset, LENGTH) for offset in self.given.offsets],
         }
 
     def __hash__(self) -> int:
@@ -252,8 +252,8 @@ class Stack(Component):
         part = object.__new__(cls)
         bodies, interfaces = (
             [
-                component_from_dict(one)
-                for one in checked_list(
+                component_from_dict(description)
+                for description in checked_list(
                     described.get(name, ()), owner="Stack.from_dict", name=name, of="descriptions"
                 )
             ]

@@ -213,8 +213,8 @@ def positive_root(function: Callable[[float], float], start: float) -> float:
         start *= 2.0
         if math.isinf(start):
             raise AssemblyError(["no compression of the base carries the weight on it"])
-    found = root_scalar(function, bracket=(0.0, start), xtol=1e-18, rtol=1e-14)
-    return float(found.root)
+    solution = root_scalar(function, bracket=(0.0, start), xtol=1e-18, rtol=1e-14)
+    return float(solution.root)
 
 
 def equilibrium_height(

@@ -78,11 +78,11 @@ class ChainEquilibrium(NamedTuple):
         """Return the equilibrium of poses, without couples as yet on `held` rotations."""
         links = chain.link_forces(poses)
         return cls(
-            np.array([one.state.rotation for one in poses]),
-            np.array([one.state.vertical for one in poses]),
-            np.array([one.normal_force for one in poses]),
-            np.array([one.elongation for one in links]),
-            np.array([one.force * one.direction for one in links]).reshape(-1, 2),
+            np.array([pose.state.rotation for pose in poses]),
+            np.array([pose.state.vertical for pose in poses]),
+            np.array([pose.normal_force for pose in poses]),
+            np.array([link.elongation for link in links]),
+            np.array([link.force * link.direction for link in links]).reshape(-1, 2),
             np.zeros(held),
         )
 
@@ -119,19 +119,27 @@ def follow_equilibrium(
     while path.at != to:
         after = to if abs(to - path.at) <= abs(step) else path.at + step
         bodies, guess = held(after), path.extrapolated(after)
-        found = find_equilibrium(bodies, guess)
-        if found is not None and _max_abs(found.rotations - guess.rotations) > MAX_ROTATION_STEP:
-            found = None
+        equilibrium = find_equilibrium(bodies, guess)
+        if (
+            equilibrium is not None
+            and _max_abs(equilibrium.rotations - guess.rotations) > MAX_ROTATION_STEP
+        ):
+            equilibrium = None
         # bodies may be in equilibrium, too, with a link broken that is not
-        breaks = found is not None and _link_breaks(bodies.chain, path.equilibrium, found)
-        if found is None or (breaks and abs(step) >= least_to_break):
+        breaks = equilibrium is not None and _link_breaks(
+            bodies.chain, path.equilibrium, equilibrium
+        )
+        if equilibrium is None or (breaks and abs(step) >= least_to_break):
             if abs(step) < least:
                 return None
             step *= 0.5
         elif breaks:
-            path, step = EquilibriumPath(after, found), to - after
+            path, step = EquilibriumPath(after, equilibrium), to - after
         else:
-            path, step = EquilibriumPath(after, found, (path.at, path.equilibrium)), 2.0 * step
+            path, step = (
+                EquilibriumPath(after, equilibrium, (path.at, path.equilibrium)),
+                2.0 * step,
+            )
     return path
 
 
@@ -166,7 +174,7 @@ def load_stiffness(
     stencil: Sequence[tuple[float, float]] = STENCIL,
 ) -> Matrix:  # fmt: skip
     """Return minus the derivatives of the generalised forces of weights and links."""
-    found = np.zeros((2 * len(poses), 2 * len(poses)))
+    stiffness = np.zeros((2 * len(poses), 2 * len(poses)))
     for at, size in enumerate(chain.sizes):
         step = DIFFERENCE_STEP * size
         for steps, weight in stencil:
@@ -176,8 +184,8 @@ def load_stiffness(
                     chain.displaced(poses, at, by) for by in (-steps * step, steps * step)
                 )
             )
-            found[:, at] += weight / step * (before - after)
-    return found
+            stiffness[:, at] += weight / step * (before - after)
+    return stiffness
 
 
 def base_stiffness(chain: LoadedChain, poses: Sequence[Pose], *, from_rest: bool = False) -> Matrix:
@@ -185,7 +193,7 @@ def base_stiffness(chain: LoadedChain, poses: Sequence[Pose], *, from_rest: bool
 
     With loads that grow `from_rest`, variables of a base's own follow them.
     """
-    found = np.zeros((2 * len(poses), 2 * len(poses)))
+    stiffness = np.zeros((2 * len(poses), 2 * len(poses)))
     for k, (standing, pose) in enumerate(zip(chain.bodies, poses, strict=True)):
         if not standing.corner:
             own = slice(2 * k, 2 * k + 2)
@@ -193,14 +201,14 @@ def base_stiffness(chain: LoadedChain, poses: Sequence[Pose], *, from_rest: bool
                 base_derivatives(standing, pose, name, from_rest=from_rest)
                 for name in DISPLACEMENTS
             ]
-            found[own, own] = np.array(jacobians).T
-    return found
+            stiffness[own, own] = np.array(jacobians).T
+    return stiffness
 
 
 def _link_breaks(chain: LoadedChain, before: ChainEquilibrium, after: ChainEquilibrium) -> bool:
     """Whether a link breaks between two equilibria."""
     pairs = zip(chain.ties, before.elongations.tolist(), after.elongations.tolist(), strict=True)
-    return any(is_broken(one, now) and not is_broken(one, was) for one, was, now in pairs)
+    return any(is_broken(tie, now) and not is_broken(tie, was) for tie, was, now in pairs)
 
 
 def _max_abs(values: Vector) -> float:
@@ -252,22 +260,24 @@ class _Step:
         """Set the changes of links in this step, and whether it is the last one."""
         allowed = TOLERANCE * (np.abs(self.coordinates) + self.sizes)
         # rotations are added up: none is more accurate than the rounding of the greatest one
-        known = ROUNDING * _max_abs(self.coordinates[::2])
-        allowed += known * self.sizes / np.repeat(self.sizes[::2], 2)
+        rounding_of_rotations = ROUNDING * _max_abs(self.coordinates[::2])
+        allowed += rounding_of_rotations * self.sizes / np.repeat(self.sizes[::2], 2)
         self.has_converged = bool((np.abs(self.step) <= allowed).all())
         self.force_change = np.zeros_like(self.link_forces)
         self.elongation_change = [
-            float(one.direction @ one.jacobian @ self.step) + one.elongation - stretch
-            for one, stretch in zip(self.links, self.guess.elongations.tolist(), strict=True)
+            float(kinematics.direction @ kinematics.jacobian @ self.step)
+            + kinematics.elongation
+            - stretch
+            for kinematics, stretch in zip(self.links, self.guess.elongations.tolist(), strict=True)
         ]
-        for one, force in zip(self.stiff_directions, forces, strict=True):
-            self.force_change[one.link] += force * one.direction
-        for i, (link, one) in enumerate(zip(self.chain.ties, self.links, strict=True)):
+        for stiff, force in zip(self.stiff_directions, forces, strict=True):
+            self.force_change[stiff.link] += force * stiff.direction
+        for i, (link, kinematics) in enumerate(zip(self.chain.ties, self.links, strict=True)):
             rounding = FORCE_TOLERANCE_RATIO * TOLERANCE * self.chain.weight
             as_predicted = _max_abs(self.force_change[i]) <= rounding
-            if not one.coincide:
+            if not kinematics.coincide:
                 self.elongation_change[i], as_predicted = self._elongation_change(
-                    link, one, i, rounding
+                    link, kinematics, i, rounding
                 )
             self.has_converged = self.has_converged and as_predicted
 
@@ -296,7 +306,7 @@ class _Step:
     def after(self, share: float) -> ChainEquilibrium:
         """Return the next guess, after a share of the step."""
         new = self.coordinates + share * self.step
-        normal_forces = np.array([one.normal_force for one in self.poses])
+        normal_forces = np.array([pose.normal_force for pose in self.poses])
         normal_forces -= share * (self.base_stiffness @ self.step)[1::2]
         elongations = self.guess.elongations + share * np.array(self.elongation_change)
         link_forces = self.link_forces + share * self.force_change
@@ -316,49 +326,49 @@ class _Step:
             return [_StiffDirection(i, along, 1.0 / stiffness, misfit)] if stiffness > 0.0 else []
         if not along.any():  # points that coincide without force may part in any direction
             directions = np.eye(2) if stiffness > 0.0 else ()
-            return [_StiffDirection(i, one, 1.0 / stiffness, 0.0) for one in directions]
-        found = list[_StiffDirection]()
+            return [_StiffDirection(i, direction, 1.0 / stiffness, 0.0) for direction in directions]
+        stiff = list[_StiffDirection]()
         if stiffness > 0.0:
             tension = float(pull @ along)
             self.link_forces[i] = tension * along
-            found.append(_StiffDirection(i, along, 1.0 / stiffness, (force - tension) / stiffness))
+            stiff.append(_StiffDirection(i, along, 1.0 / stiffness, (force - tension) / stiffness))
         if force > 0.0:  # a taut link also has stiffness across
             across = np.array([-along[1], along[0]])
             beside, compliance = float(pull @ across), math.hypot(*link_force.displacement) / force
             self.link_forces[i] += beside * across
-            found.append(_StiffDirection(i, across, compliance, -beside * compliance))
-        return found
+            stiff.append(_StiffDirection(i, across, compliance, -beside * compliance))
+        return stiff
 
     def _loads(self, poses: Sequence[Pose]) -> Vector:
         """Return the generalised forces of links, of fixed sizes, as bodies move."""
-        found = np.zeros(2 * len(poses))
+        loads = np.zeros(2 * len(poses))
         points = self.chain.link_kinematics(poses)
         for pull, here, there in zip(self.link_forces, self.links, points, strict=True):
-            kept = pull
+            force = pull
             if here.direction.any() and not here.coincide:
-                kept = (pull @ here.direction) * there.direction
-            found -= kept @ there.jacobian
-        return found
+                force = (pull @ here.direction) * there.direction
+            loads -= force @ there.jacobian
+        return loads
 
     def _equations(self) -> tuple[Matrix, Vector]:
         """Return matrix and right-hand side of the equations, symmetrical and non-dimensional."""
         chain, weight, free, sizes = self.chain, self.chain.weight, self.free, self.sizes
         energy = weight * sizes[1]
         forces = chain.generalized_loads(self.poses, self._loads(self.poses))
-        for k, (standing, one) in enumerate(zip(chain.bodies, self.poses, strict=True)):
+        for k, (standing, pose) in enumerate(zip(chain.bodies, self.poses, strict=True)):
             if not standing.corner:
-                forces[2 * k : 2 * k + 2] += one.force.moment, one.force.upward
+                forces[2 * k : 2 * k + 2] += pose.force.moment, pose.force.upward
         forces[::2] -= self.guess.couples @ self.held.rotation_weights
         inner = self.base_stiffness + load_stiffness(chain, self.poses, self._loads, SECANT)
         inner *= sizes * sizes[:, None] / energy
         jacobians = [
-            weight / energy * one.direction @ self.links[one.link].jacobian
-            for one in self.stiff_directions
+            weight / energy * stiff.direction @ self.links[stiff.link].jacobian
+            for stiff in self.stiff_directions
         ]
         rotation_weights = np.zeros((len(self.held.rotation_weights), len(sizes)))
         rotation_weights[:, ::2] = self.held.rotation_weights / sizes[0]
         tight = np.array([*jacobians, *rotation_weights]).reshape(-1, len(sizes)) @ self.constraint
-        soft = [-one.compliance * weight**2 / energy for one in self.stiff_directions]
+        soft = [-stiff.compliance * weight**2 / energy for stiff in self.stiff_directions]
         matrix = np.block(
             [
                 [inner[np.ix_(free, free)], tight.T],
@@ -366,7 +376,7 @@ class _Step:
             ]
         )
         off = self.held.rotations / sizes[0] - rotation_weights @ self.coordinates
-        misfits = [-one.misfit * weight / energy for one in self.stiff_directions]
+        misfits = [-stiff.misfit * weight / energy for stiff in self.stiff_directions]
         return matrix, np.array([*(sizes * forces / energy)[free], *misfits, *off])
 
     def is_stable(self) -> bool:

@@ -138,7 +138,9 @@ def _faults_of_link(law: Any, name: str) -> _Faults:
             faults.append(f"{name}.switch must return a LinkEvent, got {short_repr(event)}")
         elif event.state not in states or event.event not in _EVENTS:
             faults.append(f"{name}.switch gives an unknown state or event, {event}")
-    shown = [law.shown(state) for state in tried]
-    if not set(shown) <= set(LinkState):
-        faults.append(f"{name}.shown gives unknown states of restrainers, {short_repr(shown)}")
+    shown_states = [law.shown(state) for state in tried]
+    if not set(shown_states) <= set(LinkState):
+        faults.append(
+            f"{name}.shown gives unknown states of restrainers, {short_repr(shown_states)}"
+        )
     return faults

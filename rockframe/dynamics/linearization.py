@@ -28,9 +28,9 @@ def linearized_chain(chain: StandingChain, poses: list[Pose]) -> LinearMatrices:
     size = 2 * len(poses)
     damping = np.zeros((size, size))
     links = chain.link_forces(poses)
-    states = [one.state for one in links]
-    for one in links:
-        damping += one.damping_matrix
+    states = [link.state for link in links]
+    for link in links:
+        damping += link.damping_matrix
     for k, (standing, pose) in enumerate(zip(chain.bodies, poses, strict=True)):
         own = slice(2 * k, 2 * k + 2)
         damping[own, own] += np.array([base_derivatives(standing, pose, name) for name in RATES]).T
@@ -57,11 +57,11 @@ def _mass(chain: StandingChain, poses: list[Pose]) -> Matrix:
     for k in range(1, len(poses)):  # about the centre of the body that rotates
         x, y = (places[:k] - places[k]).T
         jacobians[:k, :2, 2 * k] += np.column_stack((y, -x))
-    found = np.zeros((size, size))
+    mass_matrix = np.zeros((size, size))
     for standing, jacobian in zip(chain.bodies, jacobians, strict=True):
-        found += (
+        mass_matrix += (
             jacobian.T
             @ np.diag([standing.mass, standing.mass, standing.part.body.inertia])
             @ jacobian
         )
-    return found
+    return mass_matrix

@@ -42,8 +42,8 @@ class LinkForce(NamedTuple):
     @property
     def loads(self) -> Vector:
         """Generalised forces on rotation and height of each body on its base."""
-        found: Vector = -self.force * (self.direction @ self.jacobian)
-        return found
+        loads: Vector = -self.force * (self.direction @ self.jacobian)
+        return loads
 
     @property
     def damping_matrix(self) -> Matrix:
@@ -76,12 +76,12 @@ def link_kinematics(
     bodies: Sequence[StandingBody], poses: Sequence[Pose], ties: Sequence[ChainLink]
 ) -> list[LinkKinematics]:
     """Return the relative displacements of the points of links, from the poses of bodies."""
-    frames, found = _frames(bodies, poses) if ties else [], list[LinkKinematics]()
-    for one in ties:
-        on, on_jacobian = _point(one.on, one.on_point, poses, frames)
-        to, to_jacobian = _point(one.to, one.to_point, poses, frames)
-        found.append(_relative_motion(one, on - to, on_jacobian - to_jacobian))
-    return found
+    frames, kinematics = _frames(bodies, poses) if ties else [], list[LinkKinematics]()
+    for tie in ties:
+        on, on_jacobian = _point(tie.on, tie.on_point, poses, frames)
+        to, to_jacobian = _point(tie.to, tie.to_point, poses, frames)
+        kinematics.append(_relative_motion(tie, on - to, on_jacobian - to_jacobian))
+    return kinematics
 
 
 def link_forces(
@@ -98,8 +98,8 @@ def link_forces(
     default = [None] * len(ties)
     points = link_kinematics(bodies, poses, ties)
     others = default if elongations is None else elongations
-    each = zip(ties, points, states or default, others, strict=True)
-    return [link_force(*one) for one in each]
+    rows = zip(ties, points, states or default, others, strict=True)
+    return [link_force(*row) for row in rows]
 
 
 def link_force(
@@ -117,10 +117,10 @@ def link_force(
         length, coincide = math.hypot(*(apart + displacement)) + math.hypot(*apart), not apart.any()
         elongation = float((2.0 * apart + displacement) @ displacement) / length if length else 0.0
     in_law = elongation if of_elongation is None or coincide else of_elongation
-    found = _law_values(tie, in_law, state)
-    if not direction.any() and found[0] != 0.0:
+    values = _law_values(tie, in_law, state)
+    if not direction.any() and values[0] != 0.0:
         direction = np.array([0.0, 1.0])
-    return LinkForce(*found, elongation, jacobian, direction, displacement, coincide)
+    return LinkForce(*values, elongation, jacobian, direction, displacement, coincide)
 
 
 def static_link_force(tie: ChainLink, elongation: float) -> float:
@@ -142,31 +142,31 @@ def _law_values(
     length, reach = math.hypot(*tie.separation), tie.length_scale
     stretch, own = Stretch(elongation, 0.0, 0.0, length, 1e-15 * reach), np.zeros(law.variables())
     starting = law.starting(stretch, own)
-    found = starting if state is None else state
+    law_state = starting if state is None else state
     steps = {"elongation": ELONGATION_STEP * (reach or 1.0), "rate": RATE_STEP}
     changes = [
         0.5 * (more - less) / step
         for name, step in steps.items()
         for more, less in [[
-            law.force(found, stretch._replace(**{name: getattr(stretch, name) + by}), own)
+            law.force(law_state, stretch._replace(**{name: getattr(stretch, name) + by}), own)
             for by in (step, -step)
         ]]
     ]  # fmt: skip
-    return law.force(found, stretch, own), found, changes[0], changes[1]
+    return law.force(law_state, stretch, own), law_state, changes[0], changes[1]
 
 
 def _relative_motion(tie: ChainLink, displacement: Vector, jacobian: Matrix) -> LinkKinematics:
     """Return relative displacement, its derivatives and the direction of a link."""
     if any(tie.along):
         return LinkKinematics(displacement, jacobian, np.array(tie.along))
-    now = np.array(tie.separation) + displacement
-    length = math.hypot(*now)
-    return LinkKinematics(displacement, jacobian, now / length if length else np.zeros(2))
+    separation = np.array(tie.separation) + displacement
+    length = math.hypot(*separation)
+    return LinkKinematics(displacement, jacobian, separation / length if length else np.zeros(2))
 
 
 def links_at_rest(ties: Sequence[ChainLink]) -> list[LinkForce]:
     """Return elongations and forces of links in the reference geometry."""
-    return [link_force(one, _relative_motion(one, np.zeros(2), np.zeros((2, 1)))) for one in ties]
+    return [link_force(tie, _relative_motion(tie, np.zeros(2), np.zeros((2, 1)))) for tie in ties]
 
 
 def links_of_rocking_bodies(
@@ -178,7 +178,7 @@ def links_of_rocking_bodies(
     These are the bodies from the top down to `upper`. `ends` are both points of each link, upright.
     """
     sine, vers = math.sin(rotation), 2.0 * math.sin(0.5 * rotation) ** 2
-    found = list[LinkForce]()
+    forces = list[LinkForce]()
     for tie, both in zip(ties, ends, strict=True):
         displacement, jacobian = np.zeros(2), np.zeros((2, 1))
         for k, end, sign in ((tie.on, both[0], 1.0), (tie.to, both[1], -1.0)):
@@ -187,13 +187,13 @@ def links_of_rocking_bodies(
                 shift = np.array([y * sine - x * vers, -x * sine - y * vers])
                 displacement += sign * shift
                 jacobian[:, 0] += sign * np.array([y + shift[1], -x - shift[0]])
-        found.append(link_force(tie, _relative_motion(tie, displacement, jacobian)))
-    return found
+        forces.append(link_force(tie, _relative_motion(tie, displacement, jacobian)))
+    return forces
 
 
 def _frames(bodies: Sequence[StandingBody], poses: Sequence[Pose]) -> list[_Frame]:
     """Return displacements of bodies from the reference geometry, and their axes."""
-    found, place, rotation = list[_Frame](), np.zeros(2), 0.0
+    frames, place, rotation = list[_Frame](), np.zeros(2), 0.0
     sine, cosine = 0.0, 1.0
     for k in range(len(poses) - 1, -1, -1):
         pose, body = poses[k], bodies[k].part.body
@@ -207,8 +207,8 @@ def _frames(bodies: Sequence[StandingBody], poses: Sequence[Pose]) -> list[_Fram
         place = place + shift_along + shift_normal + pose.state.vertical * normal
         rotation += pose.state.rotation
         sine, cosine = sine_cosine(rotation)
-        found.append(_Frame(place, sine, cosine, along, normal))
-    return found[::-1]
+        frames.append(_Frame(place, sine, cosine, along, normal))
+    return frames[::-1]
 
 
 def _point(
@@ -218,10 +218,10 @@ def _point(
     jacobian = np.zeros((2, 2 * len(poses)))
     if k == GROUND:
         return np.zeros(2), jacobian
-    one = frames[k]
-    vers = versine(one.sine, one.cosine)
+    axes = frames[k]
+    vers = versine(axes.sine, axes.cosine)
     x, y = point
-    shift = np.array([y * one.sine - x * vers, -x * one.sine - y * vers])
+    shift = np.array([y * axes.sine - x * vers, -x * axes.sine - y * vers])
     # from the centre of mass of each body below, as that rotates
     arm = np.array([x, y]) + shift
     for j in range(k, len(poses)):
@@ -229,7 +229,7 @@ def _point(
         far = arm if j == k else arm + _centre_offset(k, j, poses, frames)
         jacobian[:, 2 * j] = poses[j].reach.derivative * frame.along + np.array([far[1], -far[0]])
         jacobian[:, 2 * j + 1] = frame.normal
-    return one.place + shift, jacobian
+    return axes.place + shift, jacobian
 
 
 def _centre_offset(k: int, j: int, poses: Sequence[Pose], frames: Sequence[_Frame]) -> Vector:

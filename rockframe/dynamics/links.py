@@ -323,19 +323,19 @@ class Tie(NamedTuple):
         """Return the state after slow loading up to here."""
         own[0] = 0.0
         x = stretch.elongation - self.slack
-        found = TAUT
+        state = TAUT
         if x > self.limit and self.brittle != 0.0:
-            found = BROKEN
+            state = BROKEN
         elif x > self.limit:
-            own[0], found = x - self.limit, YIELDING
+            own[0], state = x - self.limit, YIELDING
         elif self.pushes != 0.0:
             if x < -self.limit and self.brittle != 0.0:
-                found = BROKEN
+                state = BROKEN
             elif x < -self.limit:
-                own[0], found = x + self.limit, YIELDING_PRESSED
+                own[0], state = x + self.limit, YIELDING_PRESSED
         elif x < -TAUT_TOLERANCE * stretch.noise:
-            found = SLACK
-        return found
+            state = SLACK
+        return state
 
     def guard(self, which: int, state: int, stretch: Stretch, own: Vector) -> tuple[float, float]:
         """Return the elongation until the end of the state, or the rate that must not reverse."""

@@ -44,14 +44,14 @@ class LoadedChain(NamedTuple):
     def rests_upright(self) -> bool:
         """Whether no load rotates the bodies away from upright."""
         level = self.along_gravity == 0.0 and not self.ties
-        return level and all(one.offset == 0.0 for one in self.bodies)
+        return level and all(body.offset == 0.0 for body in self.bodies)
 
     def scaled(self, share: float) -> "LoadedChain":
         """Return the chain with a share of its slope, eccentricities and forces of links."""
         if share == 1.0:
             return self
         return self._replace(
-            bodies=tuple(one.scaled(share) for one in self.bodies),
+            bodies=tuple(body.scaled(share) for body in self.bodies),
             along_gravity=share * self.along_gravity,
             link_factor=share * self.link_factor,
         )
@@ -59,40 +59,40 @@ class LoadedChain(NamedTuple):
     def gravity_components(self, rotations: Sequence[float]) -> list[tuple[float, float]]:
         """Return gravity normal to the deck under each body, and along it."""
         normal, along = self.bodies[0].part.body.gravity, self.along_gravity
-        rotation_below, found = 0.0, [(normal, along)]
+        rotation_below, components = 0.0, [(normal, along)]
         for rotation in reversed(rotations[1:]):
             rotation_below += rotation
             sine, cosine = sine_cosine(rotation_below)
-            found.append((normal * cosine + along * sine, along * cosine - normal * sine))
-        return found[::-1]
+            components.append((normal * cosine + along * sine, along * cosine - normal * sine))
+        return components[::-1]
 
     @property
     def weight(self) -> float:
         """The weight of all bodies on a level base."""
-        return self.bodies[0].part.body.gravity * sum(one.mass for one in self.bodies)
+        return self.bodies[0].part.body.gravity * sum(body.mass for body in self.bodies)
 
     @property
     def sizes(self) -> Vector:
         """Typical sizes of rotation and height of each body on its base."""
-        return np.ravel([(one.allowed_rotation, one.settlement) for one in self.bodies])
+        return np.ravel([(body.allowed_rotation, body.settlement) for body in self.bodies])
 
     def _under_weight(self, rotations: Sequence[float]) -> list[Pose] | None:
         """Return the bodies at rotations on their bases, without their links."""
-        mass, found = 0.0, list[Pose]()
+        mass, poses = 0.0, list[Pose]()
         gravity = self.gravity_components(rotations)
         for standing, rotation, (normal, _) in zip(self.bodies, rotations, gravity, strict=True):
             mass += standing.mass
             if not mass * normal > 0.0:
                 return None
-            found.append(equilibrium_pose(standing, rotation, mass * normal))
-        return self._with_arms(found)
+            poses.append(equilibrium_pose(standing, rotation, mass * normal))
+        return self._with_arms(poses)
 
     def _with_arms(self, poses: Sequence[Pose]) -> list[Pose]:
         """Return the bodies with their heights over the bodies beneath them."""
-        decks = [*(one.top for one in self.bodies[1:]), 0.0]
+        decks = [*(body.top for body in self.bodies[1:]), 0.0]
         return [
-            one._replace(arm=deck + standing.part.body.height + one.state.vertical)
-            for standing, one, deck in zip(self.bodies, poses, decks, strict=True)
+            pose._replace(arm=deck + standing.part.body.height + pose.state.vertical)
+            for standing, pose, deck in zip(self.bodies, poses, decks, strict=True)
         ]
 
     def poses_of(self, rotations: Vector, heights: Vector, forces: Vector) -> list[Pose]:
@@ -100,36 +100,36 @@ class LoadedChain(NamedTuple):
         numbers = (rotations.tolist(), heights.tolist(), forces.tolist())
         places = zip(self.bodies, *numbers, strict=True)
         return self._with_arms([
-            equilibrium_pose(one, rotation, force) if force > 0.0
-            else pose_at_height(one, rotation, height)
-            for one, rotation, height, force in places
+            equilibrium_pose(standing, rotation, force) if force > 0.0
+            else pose_at_height(standing, rotation, height)
+            for standing, rotation, height, force in places
         ])  # fmt: skip
 
     def displaced(self, poses: Sequence[Pose], at: int, by: float) -> list[Pose]:
         """Return the bodies with one coordinate changed, the forces of their bases unchanged."""
-        k, found = at // 2, [*poses]
-        standing, now = self.bodies[k], poses[k]
-        state = now.state._replace(**{DISPLACEMENTS[at % 2]: now.state[at % 2] + by})
+        k, displaced = at // 2, [*poses]
+        standing, pose = self.bodies[k], poses[k]
+        state = pose.state._replace(**{DISPLACEMENTS[at % 2]: pose.state[at % 2] + by})
         if standing.corner:
-            found[k] = pose_on_corner(standing, state.rotation, now.normal_force)
+            displaced[k] = pose_on_corner(standing, state.rotation, pose.normal_force)
         else:
             attitude = standing.part.body.attitude(state.rotation)
-            reach, across = standing.centre_on_deck(attitude, now.mode.pivot)
-            found[k] = now._replace(state=state, reach=reach, across=across)
-        return self._with_arms(found)
+            reach, across = standing.centre_on_deck(attitude, pose.mode.pivot)
+            displaced[k] = pose._replace(state=state, reach=reach, across=across)
+        return self._with_arms(displaced)
 
     def constraint_matrix(self, poses: Sequence[Pose]) -> Matrix:
         """Return derivatives of coordinates by the free ones: on a corner no height is free."""
-        found = np.eye(2 * len(poses))
+        matrix = np.eye(2 * len(poses))
         for k, (standing, pose) in enumerate(zip(self.bodies, poses, strict=True)):
             if standing.corner:
-                found[2 * k + 1, 2 * k] = -standing.corner_lever(pose)
-                found[2 * k + 1, 2 * k + 1] = 0.0
-        return found
+                matrix[2 * k + 1, 2 * k] = -standing.corner_lever(pose)
+                matrix[2 * k + 1, 2 * k + 1] = 0.0
+        return matrix
 
     def weights(self, poses: Sequence[Pose]) -> list[tuple[float, float]]:
         """Return the generalised forces of all weights on rotation and height of each body."""
-        found = list[tuple[float, float]]()
+        forces = list[tuple[float, float]]()
         mass = side = height = 0.0  # of what stands on a body, and its moments about the centre
         gravity = self.gravity_components([pose.state.rotation for pose in poses])
         for standing, pose, (normal, along) in zip(self.bodies, poses, gravity, strict=True):
@@ -139,10 +139,10 @@ class LoadedChain(NamedTuple):
                 side, height = side * cosine + height * sine, height * cosine - side * sine
             mass += standing.mass
             moment = normal * side - along * (height + mass * pose.reach.derivative)
-            found.append((moment, -mass * normal))
+            forces.append((moment, -mass * normal))
             side += mass * pose.across
             height += mass * (standing.part.body.height + pose.state.vertical)
-        return found
+        return forces
 
     def link_kinematics(self, poses: Sequence[Pose]) -> list[LinkKinematics]:
         """Return displacements of the points of the links."""
@@ -157,40 +157,40 @@ class LoadedChain(NamedTuple):
 
     def link_loads(self, poses: Sequence[Pose], states: Sequence[int] | None = None) -> Vector:
         """Return the generalised forces of links on rotation and height of each body."""
-        found = np.zeros(2 * len(poses))
-        for one in self.link_forces(poses, states):
-            found += self.link_factor * one.loads
-        return found
+        loads = np.zeros(2 * len(poses))
+        for link in self.link_forces(poses, states):
+            loads += self.link_factor * link.loads
+        return loads
 
     def generalized_loads(self, poses: Sequence[Pose], of_links: Vector) -> Vector:
         """Return the generalised forces of weights and links on rotation and height of each body.
 
         A body that rests on a corner has none on its height: it follows from the rotation.
         """
-        found = np.ravel(self.weights(poses)) + of_links
+        loads = np.ravel(self.weights(poses)) + of_links
         for k, (standing, pose) in enumerate(zip(self.bodies, poses, strict=True)):
             if standing.corner:
-                found[2 * k] -= standing.corner_lever(pose) * found[2 * k + 1]
-                found[2 * k + 1] = 0.0
-        return found
+                loads[2 * k] -= standing.corner_lever(pose) * loads[2 * k + 1]
+                loads[2 * k + 1] = 0.0
+        return loads
 
     def moments(self, poses: Sequence[Pose]) -> list[float]:
         """Return the generalised force on each body's rotation on its base."""
         weights = self.weights(poses)
-        found = [pose.force.moment + of[0] for pose, of in zip(poses, weights, strict=True)]
+        moments = [pose.force.moment + of[0] for pose, of in zip(poses, weights, strict=True)]
         if self.ties:
             from_links = self.link_loads(poses)[::2].tolist()
-            found = [moment + more for moment, more in zip(found, from_links, strict=True)]
-        return found
+            moments = [moment + more for moment, more in zip(moments, from_links, strict=True)]
+        return moments
 
     def rise(self, poses: Sequence[Pose]) -> float:
         """Return the rise of the highest centre of mass from upright rest [m]."""
-        found = rotation_below = top = 0.0
+        rise = rotation_below = top = 0.0
         for standing, pose in zip(self.bodies[::-1], poses[::-1], strict=True):
             sine, cosine = sine_cosine(rotation_below)
             if rotation_below != 0.0:
                 drop = (top + standing.part.body.height) * versine(sine, cosine)
-                found -= pose.across * sine + drop
-            found += pose.state.vertical * cosine
+                rise -= pose.across * sine + drop
+            rise += pose.state.vertical * cosine
             rotation_below, top = rotation_below + pose.state.rotation, standing.top
-        return found
+        return rise

@@ -220,10 +220,10 @@ class BodyOnBase(NamedTuple):
     @inlined
     def end_guards_in(self, mode: Mode, left: bool, line: BaseLine, own: Any) -> Guards:
         """Return the guards of an end of the base; those of an end that slides are idle."""
-        found = self.base.guards_of(mode.contact, left, line, own)
+        guards = self.base.guards_of(mode.contact, left, line, own)
         if mode.slides and self.base.is_held(mode.contact, left):
-            return Guards(constant(1.0, found.values), constant(0.0, found.values))
-        return found
+            return Guards(constant(1.0, guards.values), constant(0.0, guards.values))
+        return guards
 
     @inlined
     def pivot_guard(self, mode: Mode, state: BodyState, angular: float) -> tuple[float, float]:

@@ -252,11 +252,11 @@ class Pads(Base, PadNumbers):
         """Return contacts and event after a guard of a corner; correct the laws' variables."""
         if which == CORNER_GUARDS:
             state = (self.law_state(contact, left) + 1) % self.law.states()
-            found = EndEvent(self.with_state(contact, left, state), SILENT, False)
+            event = EndEvent(self.with_state(contact, left, state), SILENT, False)
         else:
-            found = self.switch_corner(contact, left, which, line, own)
-        self.settle(found.contact, line, own)
-        return found
+            event = self.switch_corner(contact, left, which, line, own)
+        self.settle(event.contact, line, own)
+        return event
 
     @kernel
     def settle(self, contact: int, line: BaseLine, own: Any) -> None:

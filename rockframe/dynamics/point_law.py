@@ -184,7 +184,7 @@ def methods_of_law(
     if not isinstance(law, type):  # pyright: ignore[reportUnnecessaryIsInstance]
         msg = f"a law is a NamedTuple, got {short_repr(law)}"
         raise ArgumentError(msg)
-    own = {name: each for name, each in vars(law).items() if inspect.isfunction(each)}
+    own = {name: method for name, method in vars(law).items() if inspect.isfunction(method)}
     fields = getattr(law, "_fields", None)
     faults = [] if fields is not None else [f"{law.__name__} is no NamedTuple"]
     faults += [f"{law.__name__} has no method {name}" for name in required if name not in own]

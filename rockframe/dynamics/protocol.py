@@ -410,5 +410,5 @@ def _of_each(function: Callable[[int], int], modes: Integers) -> Integers:
     changes = np.flatnonzero(differs)
     runs = modes[changes[:-1]].tolist()
     results = {mode: function(mode) for mode in set(runs)}
-    found = np.array([results[mode] for mode in runs], dtype=np.int64)
-    return np.repeat(found, changes[1:] - changes[:-1])
+    numbers = np.array([results[mode] for mode in runs], dtype=np.int64)
+    return np.repeat(numbers, changes[1:] - changes[:-1])

@@ -148,8 +148,8 @@ class BlockOnRigidGround(RockingNumbers, OnRigidGround):
     @inlined
     def powers(self, mode: int, state: Vector, slope: Slope, ground: Ground) -> tuple[float, float]:
         """Return the two powers of :meth:`accelerate`."""
-        found = self.accelerate(mode, state, ground)
-        return found[1], found[2]
+        rates = self.accelerate(mode, state, ground)
+        return rates[1], rates[2]
 
     @inlined
     def guards_in(self, mode: int, state: Vector, slope: Slope, ground: Ground) -> Guards:
@@ -196,8 +196,8 @@ class BlockOnRigidGround(RockingNumbers, OnRigidGround):
         if may_rest and rebound < REST_AMPLITUDE * self.corner(new).angle:
             memory[LAST_EVENT] = REST
             after, new = 0.0, RESTING
-        old, now = self.corner(mode).inertia, self.corner(new).inertia
-        memory[IMPACT_LOSS] += 0.5 * (old * before * before - now * after * after)
+        old, new_inertia = self.corner(mode).inertia, self.corner(new).inertia
+        memory[IMPACT_LOSS] += 0.5 * (old * before * before - new_inertia * after * after)
         state[1] = after
         return new
 
@@ -305,7 +305,7 @@ def rigid_ground(
     gravity : float
         Acceleration of gravity [m s^-2].
     """
-    frequency = max(sqrt(gravity * one.radius / one.inertia) for one in (left, right))
+    frequency = max(sqrt(gravity * corner.radius / corner.inertia) for corner in (left, right))
     least = left if left.angle < right.angle else right
 
     def initial(start: Start) -> tuple[int, Vector, Vector]:

@@ -119,8 +119,8 @@ def law_prototypes(laws: Sequence[Any]) -> list[Any]:
     If one class of `BUILT_IN` is among them all of these are returned, so that any mixture of them
     runs by the same machine code.
     """
-    found = {type(law): law for law in laws}
-    if any(type(law) in found for law in BUILT_IN):
-        own = [law for law_class, law in found.items() if law_class not in map(type, BUILT_IN)]
+    prototypes = {type(law): law for law in laws}
+    if any(type(law) in prototypes for law in BUILT_IN):
+        own = [law for law_class, law in prototypes.items() if law_class not in map(type, BUILT_IN)]
         return [*BUILT_IN, *own]
-    return list(found.values())
+    return list(prototypes.values())

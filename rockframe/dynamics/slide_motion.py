@@ -226,17 +226,17 @@ class SlideMotion(OnRigidGround, SlideNumbers):
         self, mode: int, state: Vector, ground: Ground, loads: Loads
     ) -> tuple[float, float, float, float, float]:
         """Return the values of :meth:`accelerate` under given loads."""
-        found = self.contact(mode, state, loads)
+        contact = self.contact(mode, state, loads)
         across, up = self.centre_velocity(mode, state)
         supplied = -ground.x * across - ground.y * up
-        dissipated = -found.along * state[DOF + SLIP]
-        return found.rotation, found.slip, found.rise, dissipated, supplied
+        dissipated = -contact.along * state[DOF + SLIP]
+        return contact.rotation, contact.slip, contact.rise, dissipated, supplied
 
     @inlined
     def powers(self, mode: int, state: Vector, slope: Slope, ground: Ground) -> tuple[float, float]:
         """Return the two powers of :meth:`accelerate`; the compiler merges both evaluations."""
-        found = self.accelerate(mode, state, ground)
-        return found[DOF], found[DOF + 1]
+        rates = self.accelerate(mode, state, ground)
+        return rates[DOF], rates[DOF + 1]
 
     @inlined
     def guards_in(self, mode: int, state: Vector, slope: Slope, ground: Ground) -> Guards:
@@ -257,22 +257,24 @@ class SlideMotion(OnRigidGround, SlideNumbers):
         else:
             if bearing != FULL:
                 landing, falling = side * state[ROTATION], side * rate
-            found = self.contact(mode, state, loads)
+            contact = self.contact(mode, state, loads)
             if sign != 0.0:
                 speed = 1.0 / math.sqrt(self.gravity * self.height)
                 # rounding must not stop a slip that starts
                 slowing = speed * (sign * slope[SLIP] + ROUNDING * self.gravity)
                 stopping = speed * sign * state[DOF + SLIP]
-                pressing = scale * found.normal
+                pressing = scale * contact.normal
             elif self.static < math.inf:
-                limit = self.static * found.normal
-                to_right, to_left = scale * (limit + found.along), scale * (limit - found.along)
+                limit = self.static * contact.normal
+                to_right, to_left = scale * (limit + contact.along), scale * (limit - contact.along)
             elif bearing != FULL:  # a corner that would fall back is held, in tension
-                pressing = scale * max(found.normal, -self.free_acceleration(bearing, state, loads))
+                pressing = scale * max(
+                    contact.normal, -self.free_acceleration(bearing, state, loads)
+                )
             if bearing == FULL:
-                tipping = found.along - loads.moment / self.height
-                pressing = scale * (self.right / self.height * found.normal + tipping)
-                left = scale * (self.left / self.height * found.normal - tipping)
+                tipping = contact.along - loads.moment / self.height
+                pressing = scale * (self.right / self.height * contact.normal + tipping)
+                left = scale * (self.left / self.height * contact.normal - tipping)
         values = landing, stopping, pressing, left, to_right, to_left
         return Guards(values, (falling, slowing, 0.0, 0.0, 0.0, 0.0))
 

@@ -136,11 +136,11 @@ class Springs(Base, SpringNumbers):
     def flow(self, contact: int, line: BaseLine, own: Vector) -> Variables:
         """Return the rates of the laws' variables; contacts change at events only."""
         rates = self.zero_rates
-        each = self.law.variables()
+        count = self.law.variables()
         for i in range(len(self.places)):
             state = int(own[i]) // SPRING if int(own[i]) % SPRING == TOUCHING else FREE
-            found = self.law.rates(state, self.point(i, line), self.law_variables(own, i))
-            rates = with_numbers(rates, len(self.places) + i * each, found)
+            rates_of_law = self.law.rates(state, self.point(i, line), self.law_variables(own, i))
+            rates = with_numbers(rates, len(self.places) + i * count, rates_of_law)
         return rates
 
     @kernel
@@ -149,10 +149,10 @@ class Springs(Base, SpringNumbers):
         stored = change = 0.0
         for i in range(len(self.places)):
             point, variables = self.point(i, line), self.law_variables(own, i)
-            one, less = 0.0, -self.rest_energy
+            energy, less = 0.0, -self.rest_energy
             if point.pressed > self.law.sunk(variables):
-                one, less = self.law.energies(point, self.rest_energy, variables)
-            stored += self.lengths[i] * one
+                energy, less = self.law.energies(point, self.rest_energy, variables)
+            stored += self.lengths[i] * energy
             change += self.lengths[i] * less
         return stored, change
 
@@ -194,11 +194,11 @@ class Springs(Base, SpringNumbers):
         i = self.spring_number(left, which)
         was, here = int(own[i]), self.point(i, line)
         for j in range(len(self.places)):
-            there = self.point(j, line)
-            near = abs(there.pressed - here.pressed) <= SIMULTANEOUS * self.settlement
-            if j == i or (int(own[j]) == was and near and there.speed * here.speed >= 0.0):
-                own[j] = self.spring_after(was, which % GUARDS, there, self.law_variables(own, j))
-                self.law.settle(int(own[j]) // SPRING, there, self.law_variables(own, j))
+            other = self.point(j, line)
+            near = abs(other.pressed - here.pressed) <= SIMULTANEOUS * self.settlement
+            if j == i or (int(own[j]) == was and near and other.speed * here.speed >= 0.0):
+                own[j] = self.spring_after(was, which % GUARDS, other, self.law_variables(own, j))
+                self.law.settle(int(own[j]) // SPRING, other, self.law_variables(own, j))
         new, event = self.contact_of(own), SILENT
         held_left, held_right = self.is_held(new, True), self.is_held(new, False)
         was_left, was_right = self.is_held(contact, True), self.is_held(contact, False)

@@ -44,8 +44,10 @@ class StandingChain(LoadedChain):
 
     def _has_broken(self, poses: Sequence[Pose]) -> bool:
         """Whether a link is broken in these poses."""
-        found = self.link_forces(poses) if poses and self.ties else []
-        return any(is_broken(one, of.elongation) for one, of in zip(self.ties, found, strict=False))
+        forces = self.link_forces(poses) if poses and self.ties else []
+        return any(
+            is_broken(tie, of.elongation) for tie, of in zip(self.ties, forces, strict=False)
+        )
 
     def _single_body_at(self, rotation: float) -> list[Pose] | None:
         """Return a single body at a rotation, with links in their state after slow loading."""
@@ -65,19 +67,19 @@ class StandingChain(LoadedChain):
 
         standing, at = self.bodies[0], partial(self._pose_at_height, pose.state.rotation)
         here, far = pose.state.vertical, MAX_HEIGHT_CHANGE * standing.part.body.size()
-        found, residual = at(here)
+        body, residual = at(here)
         if abs(residual) <= 4.0 * ROUNDING * self.weight:
-            return found
+            return body
         step = math.copysign(standing.settlement, residual)
-        there = here + step
-        while at(there)[1] * step > 0.0:
+        beyond = here + step
+        while at(beyond)[1] * step > 0.0:
             step *= 2.0
-            here, there = there, there + step
+            here, beyond = beyond, beyond + step
             if abs(step) > far:
                 return None
-        height = brentq(lambda height: at(height)[1], here, there, xtol=HEIGHT_TOLERANCE)
-        found, residual = at(cast("float", height))
-        return found if abs(residual) <= MAX_RESIDUAL * self.weight else None
+        height = brentq(lambda height: at(height)[1], here, beyond, xtol=HEIGHT_TOLERANCE)
+        body, residual = at(cast("float", height))
+        return body if abs(residual) <= MAX_RESIDUAL * self.weight else None
 
     def _pose_at_height(self, rotation: float, height: float) -> tuple[list[Pose], float]:
         """Return a single body at a rotation and a height, and the upward force on it."""
@@ -112,14 +114,14 @@ class StandingChain(LoadedChain):
             return None
         poses = self.poses_of(*path.equilibrium.positions)
         loads = np.ravel(self.weights(poses))
-        for force, one in zip(
+        for force, pose in zip(
             path.equilibrium.link_forces, self.link_kinematics(poses), strict=True
         ):
-            loads -= force @ one.jacobian
-        for k, (standing, one) in enumerate(zip(self.bodies, poses, strict=True)):
+            loads -= force @ pose.jacobian
+        for k, (standing, pose) in enumerate(zip(self.bodies, poses, strict=True)):
             if standing.corner:
-                poses[k] = pose_on_corner(standing, one.state.rotation, -float(loads[2 * k + 1]))
-        is_compressed = all(one.normal_force >= 0.0 for one in poses)
+                poses[k] = pose_on_corner(standing, pose.state.rotation, -float(loads[2 * k + 1]))
+        is_compressed = all(pose.normal_force >= 0.0 for pose in poses)
         return self._with_arms(poses) if is_compressed else None
 
     def rest(self) -> list[Pose] | None:
@@ -138,10 +140,10 @@ class StandingChain(LoadedChain):
 
         Equilibrium is followed from upright to either side; None from where it ends.
         """
-        one, every = len(self.bodies) == 1, range(len(rotations))
-        found = [self._single_body_at(rotation) if one else None for rotation in rotations]
+        is_single, every = len(self.bodies) == 1, range(len(rotations))
+        curve = [self._single_body_at(rotation) if is_single else None for rotation in rotations]
         # a link that is broken at one height of a body may be whole at another
-        sought = [i for i in every if not one or self._has_broken(found[i] or [])]
+        sought = [i for i in every if not is_single or self._has_broken(curve[i] or [])]
         for side in (1.0, -1.0):
             here = [i for i in sought if math.copysign(1.0, rotations[i]) == side]
             path = self._upright_path() if here else None
@@ -149,8 +151,8 @@ class StandingChain(LoadedChain):
                 if path is None:
                     break
                 path, poses = self.held_at(path, rotations[i])
-                found[i] = poses or found[i]
-        return found
+                curve[i] = poses or curve[i]
+        return curve
 
     def _upright_path(self) -> EquilibriumPath | None:
         """Return the start of the curve: equilibrium under all loads, the highest body upright."""

@@ -46,11 +46,11 @@ from rockframe.dynamics.protocol import (
 
 
 @kernel
-def has_same_hold(part: BodyOnBase, one: Mode, other: Mode) -> bool:
+def has_same_hold(part: BodyOnBase, first: Mode, second: Mode) -> bool:
     """Whether two modes hold a body at the same point, or both at none."""
-    if part.is_free(one) or part.is_free(other):
-        return part.is_free(one) and part.is_free(other)
-    return one.pivot == other.pivot
+    if part.is_free(first) or part.is_free(second):
+        return part.is_free(first) and part.is_free(second)
+    return first.pivot == second.pivot
 
 
 @kernel
@@ -68,9 +68,9 @@ def set_end_speed(
     state: Vector,
 ) -> None:  # fmt: skip
     """Set the speed of an end to `speed`, shifted by its rounding noise in a direction."""
-    now, noise = end_speed(part, left, system.state_of(k, state))
+    present, noise = end_speed(part, left, system.state_of(k, state))
     shift = direction * max(noise, part.base.least_landing())
-    system.shift_vertical(k, 0.0, speed + shift - now, state)
+    system.shift_vertical(k, 0.0, speed + shift - present, state)
 
 
 @kernel
@@ -185,8 +185,8 @@ def repin_at_landing(
     system.record_impulse(k, 0.0, 0.0, share * hold)
     memory[HELD_PLACE + k] = place
     memory[REPINNING_LOSS] = blend(lost, memory[REPINNING_LOSS], loss_share(share))
-    now, _ = end_speed(part, left, system.state_of(k, state))
-    system.shift_vertical(k, 0.0, target - now, state)
+    end, _ = end_speed(part, left, system.state_of(k, state))
+    system.shift_vertical(k, 0.0, target - end, state)
     return True
 
 
@@ -231,16 +231,16 @@ def mode_after_separation(
     If this impulse would end its rise, the end would be held again at the same instant, endlessly:
     then it stays held without a force if its base presses, or else rises with the old held point.
     """
-    was, now = system.body_mode(mode, k), system.body_mode(new, k)
-    repins = not has_same_hold(part, was, now)
+    was, new_body_mode = system.body_mode(mode, k), system.body_mode(new, k)
+    repins = not has_same_hold(part, was, new_body_mode)
     before = system.velocities(state)
     lost, place = memory[REPINNING_LOSS], memory[HELD_PLACE + k]
     if repins:
         repin(system, part, k, mode, new, state, memory)
-    flies = part.flies(now.contact)
+    flies = part.flies(new_body_mode.contact)
     line = part.body.base_line_at(system.state_of(k, state))
     own = part.base.read(state, system.base_variable_index(k))
-    presses = part.base.presses(now.contact, left, line, own)
+    presses = part.base.presses(new_body_mode.contact, left, line, own)
     speed, noise = end_speed(part, left, system.state_of(k, state))
     rises = not repins or flies or speed > noise
     if rises and repins and not flies:
@@ -249,7 +249,7 @@ def mode_after_separation(
         system.blend_velocities(before, 0.0, state)
         memory[REPINNING_LOSS], memory[HELD_PLACE + k] = lost, place
         if not presses:
-            return system.with_body_mode(new, k, Mode(now.contact, was.pivot, was.slides))
+            return system.with_body_mode(new, k, Mode(new_body_mode.contact, was.pivot, was.slides))
         memory[LAST_EVENT] = SILENT
         speed = following_speed(system, part, k, left, state)
         set_end_speed(system, part, k, left, speed, 1.0, state)
@@ -258,11 +258,11 @@ def mode_after_separation(
     if presses and flies and not part.base.touches(was.contact, not left):
         rises = system.end_accelerations(k, new, state, ground)
         if part.base.will_press(left, with_accelerations(line, rises[0], rises[1]), own):
-            contact = part.base.held(now.contact, left)
+            contact = part.base.held(new_body_mode.contact, left)
             return system.with_body_mode(new, k, Mode(contact, was.pivot, True))
     elif presses and repins and not flies:
-        waiting = part.base.waiting(now.contact, left)
-        return system.with_body_mode(new, k, Mode(waiting, now.pivot, False))
+        waiting = part.base.waiting(new_body_mode.contact, left)
+        return system.with_body_mode(new, k, Mode(waiting, new_body_mode.pivot, False))
     return new
 
 
@@ -275,32 +275,34 @@ def switch_end(
     was = system.body_mode(mode, k)
     line = part.body.base_line_at(system.state_of(k, state))
     own = part.base.read(state, system.base_variable_index(k))
-    found = part.base.switch(was.contact, left, which, line, own)
-    memory[LAST_EVENT] = found.event
-    if found.crossed:
+    event = part.base.switch(was.contact, left, which, line, own)
+    memory[LAST_EVENT] = event.event
+    if event.crossed:
         # the crossed level is set exactly, so that rounding cannot undo the switch
         system.shift_vertical(k, part.base.level(left, line, own), 0.0, state)
-    if found.event == SILENT:
-        return system.with_body_mode(mode, k, Mode(found.contact, was.pivot, was.slides))
-    now = part.mode_for_contact(found.contact, system.state_of(k, state))
-    new = system.with_body_mode(mode, k, now)
-    if found.event == SEPARATION:
+    if event.event == SILENT:
+        return system.with_body_mode(mode, k, Mode(event.contact, was.pivot, was.slides))
+    new_body_mode = part.mode_for_contact(event.contact, system.state_of(k, state))
+    new = system.with_body_mode(mode, k, new_body_mode)
+    if event.event == SEPARATION:
         return mode_after_separation(system, part, k, left, mode, new, state, ground, memory)
     flies = part.flies(was.contact)
-    both = flies and part.base.is_held(now.contact, not left)
+    both = flies and part.base.is_held(new_body_mode.contact, not left)
     if flies and not both:
         target = 0.0
-        if found.event == REENGAGEMENT:
+        if event.event == REENGAGEMENT:
             target = following_speed(system, part, k, left, state)
         if repin_at_landing(system, part, k, mode, new, left, target, state, memory):
-            return system.with_body_mode(new, k, Mode(now.contact, now.pivot, True))
-    elif not has_same_hold(part, was, now):
+            return system.with_body_mode(
+                new, k, Mode(new_body_mode.contact, new_body_mode.pivot, True)
+            )
+    elif not has_same_hold(part, was, new_body_mode):
         repin(system, part, k, mode, new, state, memory)
-    if found.event == REENGAGEMENT:
+    if event.event == REENGAGEMENT:
         line = part.body.base_line_at(system.state_of(k, state))
-        contact = part.base.engaged(now.contact, left, line, own)
-        return system.with_body_mode(new, k, Mode(contact, now.pivot, False))
-    if found.event == IMPACT:
+        contact = part.base.engaged(new_body_mode.contact, left, line, own)
+        return system.with_body_mode(new, k, Mode(contact, new_body_mode.pivot, False))
+    if event.event == IMPACT:
         apply_impact(system, part, k, new, left or both, both or not left, state, memory)
         stop_negligible_rebound(system, part, k, left, new, state, ground, memory)
     return new

@@ -125,7 +125,7 @@ class FrameWithTendons(FrameTendonNumbers, LinkRows, OnRigidGround):
     def accelerate(self, mode: int, state: Vector, ground: Ground) -> Vector:
         """Return the acceleration, rates of variables, dashpot power and input power."""
         out, rocking_mode = self.slopes(), mode % frame.MODES
-        found = self.rocking.accelerate(rocking_mode, state, ground)
+        slope = self.rocking.accelerate(rocking_mode, state, ground)
         for i in range(len(out)):
             out[i] = 0.0
         if rocking_mode == frame.RESTING:
@@ -135,13 +135,13 @@ class FrameWithTendons(FrameTendonNumbers, LinkRows, OnRigidGround):
         link, dissipated = self.tendon_stretch(mode, state, 0.0), 0.0
         for i in range(self.link_count):
             row, own = self.row_of_link(i), self.link_variables(i, state)
-            law, each = self.law_of(row), self.law.variables()
+            law, count = self.law_of(row), self.law.variables()
             link_state = self.link_state(mode, row)
             dissipated += law.power(link_state, link, own)
-            law.rates(link_state, link, own, view_of(out, 1 + i * each, each))
-        out[0] = found[0] - self.rocking.side(rocking_mode) * restoring / inertia
+            law.rates(link_state, link, own, view_of(out, 1 + i * count, count))
+        out[0] = slope[0] - self.rocking.side(rocking_mode) * restoring / inertia
         out[1 + self.variables()] = self.column_count * dissipated
-        out[2 + self.variables()] = found[2]
+        out[2 + self.variables()] = slope[2]
         return out
 
     @kernel
@@ -164,9 +164,9 @@ class FrameWithTendons(FrameTendonNumbers, LinkRows, OnRigidGround):
         """Return the guards of impact and uplift, then those of each tendon."""
         values, changes = self.guard_workspace(0), self.guard_workspace(1)
         rocking_mode = mode % frame.MODES
-        found = self.rocking.guards_in(rocking_mode, state, slope, ground)
-        put(found.values, 0, values)
-        put(found.changes, 0, changes)
+        guards = self.rocking.guards_in(rocking_mode, state, slope, ground)
+        put(guards.values, 0, values)
+        put(guards.changes, 0, changes)
         if rocking_mode == frame.RESTING:
             right = self.rocking.right
             height = right.radius * sine_cosine(right.angle)[1]
@@ -201,16 +201,16 @@ class FrameWithTendons(FrameTendonNumbers, LinkRows, OnRigidGround):
         row, link = self.row_of_link(i), self.tendon_stretch(mode, state, 0.0)
         link_state, law = self.link_state(mode, row), self.law_of(row)
         which = guard - frame.GUARDS - GUARDS * i
-        found = law.switch(which, link_state, link, self.link_variables(i, state))
-        memory[LAST_EVENT] = found.event
-        memory[LINK_LOSS] += self.column_count * found.lost
+        event = law.switch(which, link_state, link, self.link_variables(i, state))
+        memory[LAST_EVENT] = event.event
+        memory[LINK_LOSS] += self.column_count * event.lost
         memory[LINK_PLACE] = i + 1.0
-        return mode + int(row[PLACE_VALUE]) * (found.state - link_state)
+        return mode + int(row[PLACE_VALUE]) * (event.state - link_state)
 
     @kernel
     def energies(self, mode: int, state: Vector) -> Energies:
         """Return the energies of columns, beam and tendons."""
-        found = self.rocking.energies(mode % frame.MODES, state)
+        energies = self.rocking.energies(mode % frame.MODES, state)
         link, stored, at_rest = self.tendon_stretch(mode, state, 0.0), 0.0, 0.0
         for i in range(self.link_count):
             row = self.row_of_link(i)
@@ -219,7 +219,7 @@ class FrameWithTendons(FrameTendonNumbers, LinkRows, OnRigidGround):
             at_rest += row[REST_ENERGY]
         elastic = self.column_count * stored
         return Energies(
-            found.kinetic, found.gravity, elastic, elastic - self.column_count * at_rest
+            energies.kinetic, energies.gravity, elastic, elastic - self.column_count * at_rest
         )
 
     @kernel
@@ -264,17 +264,17 @@ def frame_with_tendons(
 ) -> ContactModel:
     """Return the model of a frame with tendons from the model without them."""
     rows, value = list[Vector](), frame.MODES
-    for one in links:
-        along = ChainLink(0, (0.0, 0.0), GROUND, (0.0, 0.0), (0.0, 0.0), one)
-        rows.append(link_row(along, one.law, value))
-        value *= padded_state_count(one.law.states())
+    for tendon in links:
+        along = ChainLink(0, (0.0, 0.0), GROUND, (0.0, 0.0), (0.0, 0.0), tendon)
+        rows.append(link_row(along, tendon.law, value))
+        value *= padded_state_count(tendon.law.states())
     rocking: Any = model.system
     filled, count = np.concatenate(rows), len(links)
     system: FrameWithTendons = with_workspace(
         FrameWithTendons(rocking, half_width, float(columns), 0, links[0].law, count, filled),
         filled,
     )
-    stiffness = columns * sum(one.stiffness for one in links) * (2.0 * half_width) ** 2
+    stiffness = columns * sum(tendon.stiffness for tendon in links) * (2.0 * half_width) ** 2
     fastest = math.sqrt(model.fastest_frequency**2 + stiffness / rocking.right.inertia)
 
     def initial(start: Start) -> tuple[int, Vector, Vector]:
@@ -283,8 +283,8 @@ def frame_with_tendons(
         link = system.tendon_stretch(mode, state, 0.0)
         for i in range(count):
             row = system.row_of_link(i)
-            found = system.law_of(row).starting(link, system.link_variables(i, state))
-            mode += int(row[PLACE_VALUE]) * found
+            start_state = system.law_of(row).starting(link, system.link_variables(i, state))
+            mode += int(row[PLACE_VALUE]) * start_state
         return mode, state, np.append(memory, 0.0)
 
     mode, state, _ = initial(Start())
@@ -297,7 +297,7 @@ def frame_with_tendons(
         model,
         name="rocking frame with tendons",
         system=system,
-        scales=np.concatenate([model.scales, *(one.variable_scales for one in links)]),
+        scales=np.concatenate([model.scales, *(tendon.variable_scales for tendon in links)]),
         guard_tolerance=np.concatenate([
             model.guard_tolerance, np.full(GUARDS * count, ROUNDING * 4.0 * half_width),
         ]),

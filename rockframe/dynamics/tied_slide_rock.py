@@ -159,10 +159,10 @@ class TiedSlideRock(TiedNumbers, LinkMechanics, SlideRock):  # pyright: ignore[r
             if mode == HELD:
                 return out
         loads, dissipated = self.loads_and_link_power(mode, state, ground)
-        found = self.accelerations(mode, state, ground, loads)
-        out[SLIP], out[ROTATION], out[RISE] = found[SLIP], found[ROTATION], found[RISE]
+        slope = self.accelerations(mode, state, ground, loads)
+        out[SLIP], out[ROTATION], out[RISE] = slope[SLIP], slope[ROTATION], slope[RISE]
         powers = DOF + self.variables()
-        out[powers], out[powers + 1] = found[DOF] + dissipated, found[DOF + 1]
+        out[powers], out[powers + 1] = slope[DOF] + dissipated, slope[DOF + 1]
         return out
 
     @kernel
@@ -175,9 +175,9 @@ class TiedSlideRock(TiedNumbers, LinkMechanics, SlideRock):  # pyright: ignore[r
     def guards_of_bodies(self, mode: int, state: Vector, slope: Slope, ground: Ground) -> Guards:
         """Write the guards of the block, and their rates."""
         values, changes = self.guard_workspace(0), self.guard_workspace(1)
-        found = self.guards_under(mode, state, slope, self.loads(mode, state, ground))
-        put(found.values, 0, values)
-        put(found.changes, 0, changes)
+        guards = self.guards_under(mode, state, slope, self.loads(mode, state, ground))
+        put(guards.values, 0, values)
+        put(guards.changes, 0, changes)
         return Guards(values, changes)
 
     @kernel
@@ -209,8 +209,8 @@ def tied_slide_rock(block: SlideRock, ties: Sequence[ChainLink], *, mass: float)
     system: TiedSlideRock = with_workspace(
         TiedSlideRock(*block, 1, len(ties), 0.0, law, filled), filled
     )
-    each = [system.law_of(system.row_of_link(i)) for i in range(len(ties))]
-    system = system._replace(begins_idle=float(all(one.idles(0) for one in each)))
+    laws = [system.law_of(system.row_of_link(i)) for i in range(len(ties))]
+    system = system._replace(begins_idle=float(all(one.idles(0) for one in laws)))
     upright, at_rest, _ = untied.initial(Start())
     link_variables = np.zeros(system.variables())
     state_at_rest = np.append(at_rest, link_variables)
@@ -225,7 +225,7 @@ def tied_slide_rock(block: SlideRock, ties: Sequence[ChainLink], *, mass: float)
     block_tolerance = untied.guard_tolerance.copy()
     forces = block_tolerance[NORMAL_FORCE:]
     block_tolerance[NORMAL_FORCE:] = np.maximum(forces, link_force_rounding(ties) / block.gravity)
-    shown, own = visible_links(ties), untied.columns
+    visible, own = visible_links(ties), untied.columns
     if block.static == math.inf:  # no columns of slip where there cannot be any
         own = tuple(
             replace(one, name=f"unused_{one.name}") if one.name in SLIP_COLUMNS else one
@@ -236,9 +236,9 @@ def tied_slide_rock(block: SlideRock, ties: Sequence[ChainLink], *, mass: float)
         system=system,
         scales=np.append(untied.scales, link_scales(system, ties)),
         guard_tolerance=np.concatenate([block_tolerance, *map(link_guard_tolerance, ties)]),
-        columns=(*own, *link_columns(len(ties), shown)),
+        columns=(*own, *link_columns(len(ties), visible)),
         memory=(*untied.memory, "link_of_event"),
-        links=shown,
+        links=visible,
         selects=True,
         fastest_frequency=math.hypot(untied.fastest_frequency, frequency),
         damping_rate=damping,
@@ -256,5 +256,5 @@ def link_bounds(block: SlideRock, ties: Sequence[ChainLink]) -> tuple[float, flo
         stiffness += tie.numbers.stiffness * jacobian.T @ jacobian
         damping += tie.numbers.damping * jacobian.T @ jacobian
     root = np.diag([1.0, 1.0, math.sqrt(block.inertia)])
-    fastest, damped = (greatest_eigenvalue(one, root) for one in (stiffness, damping))
+    fastest, damped = (greatest_eigenvalue(matrix, root) for matrix in (stiffness, damping))
     return math.sqrt(max(fastest, 0.0)), max(damped, 0.0)

@@ -31,9 +31,9 @@ def is_rigid(base: BaseNumbers) -> bool:
     return isinstance(base.law, Rigid)
 
 
-def per_own_mass(one: ChainBody) -> Body:
+def per_own_mass(body: ChainBody) -> Body:
     """Return the body per unit of its own mass."""
-    return one.body._replace(inertia=one.body.inertia / one.mass)
+    return body.body._replace(inertia=body.body.inertia / body.mass)
 
 
 def fastest_vibration(
@@ -51,7 +51,7 @@ def fastest_vibration(
         fastest = max(fastest, greatest_eigenvalue(stiffness + link_stiffness, root))
         damping = max(damping, greatest_eigenvalue(base_damping + link_damping, root))
     # a body at rest on a rigid base makes no vibration faster; a rocking one has a rate of its own
-    rocking = sum(rocking_rate(per_own_mass(one)) ** 2 for one in bodies if is_rigid(one.base))
+    rocking = sum(rocking_rate(per_own_mass(body)) ** 2 for body in bodies if is_rigid(body.base))
     return math.sqrt(max(fastest, rocking)), damping
 
 
@@ -92,13 +92,13 @@ def upright_matrices(bodies: Sequence[ChainBody]) -> tuple[Matrix, Matrix, Matri
     down.
     """
     x, y, rotation = upright_jacobians(bodies)
-    root = np.sqrt([one.mass for one in bodies])[:, None]
-    gyration = np.sqrt([one.body.inertia for one in bodies])[:, None]
+    root = np.sqrt([body.mass for body in bodies])[:, None]
+    gyration = np.sqrt([body.body.inertia for body in bodies])[:, None]
     springs = np.array([
-        each for one in bodies
-        for each in (one.base.rotational_stiffness, one.base.vertical_stiffness)
+        stiffness for body in bodies
+        for stiffness in (body.base.rotational_stiffness, body.base.vertical_stiffness)
     ])  # fmt: skip
-    times = np.repeat([one.base.damping_time for one in bodies], 2)
+    times = np.repeat([body.base.damping_time for body in bodies], 2)
     rows = np.concatenate([root * x, root * y, gyration * rotation])
     return np.linalg.qr(rows).R, np.diag(springs), np.diag(springs * times)
 
@@ -110,13 +110,13 @@ def upright_jacobians(bodies: Sequence[ChainBody]) -> tuple[Matrix, Matrix, Matr
     below_x, below_y, below_rotation = (np.zeros(2 * count) for _ in range(3))
     deck = 0.0
     for k in range(count - 1, -1, -1):
-        one = bodies[k]
-        arm = 0.0 if k == count - 1 else deck + one.body.height
-        offset = 0.0 if k == count - 1 else one.offset
+        body = bodies[k]
+        arm = 0.0 if k == count - 1 else deck + body.body.height
+        offset = 0.0 if k == count - 1 else body.offset
         own, up = np.zeros(2 * count), np.zeros(2 * count)
         own[2 * k], up[2 * k + 1] = 1.0, 1.0
-        x[k] = below_x + arm * below_rotation + one.body.height * own
+        x[k] = below_x + arm * below_rotation + body.body.height * own
         y[k] = below_y - offset * below_rotation + up
         rotation[k] = below_rotation + own
-        below_x, below_y, below_rotation, deck = x[k], y[k], rotation[k], one.top
+        below_x, below_y, below_rotation, deck = x[k], y[k], rotation[k], body.top
     return x, y, rotation

@@ -32,7 +32,7 @@ def display_name(name: str, history: Iterable[str]) -> str:
     """Return the name of a motion, preceded by its factor and followed by its processing."""
     steps = list(history)
     factors = [_SCALED_STEP.fullmatch(step) for step in steps]
-    factor = math.prod(float(found[1]) for found in factors if found is not None)
+    factor = math.prod(float(match[1]) for match in factors if match is not None)
     named = ", ".join([name, *dict.fromkeys(filter(None, map(_processing_word, steps)))])
     return named if factor == 1.0 else f"{factor:.6g} times {named}"
 

@@ -87,12 +87,12 @@ class HorizontalPair(metaclass=SuggestingMeta):
                 raise ComponentError(msg)
             _check_same_step_and_start(self.first, motion, name, owner)
         azimuths = [motion.metadata.get("azimuth") for motion in (self.first, self.second)]
-        known = [float(value) for value in azimuths if isinstance(value, int | float)]
-        if len(known) == 2:
-            angle = abs((known[1] - known[0] + 180.0) % 360.0 - 180.0)
+        degrees = [float(value) for value in azimuths if isinstance(value, int | float)]
+        if len(degrees) == 2:
+            angle = abs((degrees[1] - degrees[0] + 180.0) % 360.0 - 180.0)
             if abs(angle - _RIGHT_ANGLE) > _TOLERANCE:
                 msg = (
-                    f"{owner}: the components point to {known[0]:g}° and {known[1]:g}°, "
+                    f"{owner}: the components point to {degrees[0]:g}° and {degrees[1]:g}°, "
                     "which are not at a right angle"
                 )
                 raise ComponentError(msg)
@@ -139,12 +139,12 @@ class HorizontalPair(metaclass=SuggestingMeta):
         """
         source = read_source(path)
         readings: list[Reading] = []
-        for one in read_components(source, format):
-            if isinstance(one, RecordError):
-                raise one
-            readings.append(one)
-        horizontal = [one for one in readings if not one.vertical]
-        vertical = [one for one in readings if one.vertical]
+        for component in read_components(source, format):
+            if isinstance(component, RecordError):
+                raise component
+            readings.append(component)
+        horizontal = [component for component in readings if not component.vertical]
+        vertical = [component for component in readings if component.vertical]
         if len(horizontal) != 2 or len(vertical) > 1:
             found = f"{len(horizontal)} horizontal and {len(vertical)} vertical components"
             expected = "two horizontal ones and at most one vertical; read them one by one"
@@ -152,8 +152,12 @@ class HorizontalPair(metaclass=SuggestingMeta):
         for reading in readings:
             warn_of_reading(reading)
         motions = [
-            motion_of_reading(GroundMotion, one, f"{one.file} {one.metadata.get('component', '')}")
-            for one in (*horizontal, *vertical)
+            motion_of_reading(
+                GroundMotion,
+                component,
+                f"{component.file} {component.metadata.get('component', '')}",
+            )
+            for component in (*horizontal, *vertical)
         ]
         return cls(*motions)
 
@@ -173,8 +177,10 @@ class HorizontalPair(metaclass=SuggestingMeta):
     def signals(self) -> tuple[Signal, Signal]:
         """Both components in SI units, of the same length."""
         count = max(len(self.first), len(self.second))
-        one, other = (padded(motion.si.horizontal, count) for motion in (self.first, self.second))
-        return one, other
+        first, second = (
+            padded(motion.si.horizontal, count) for motion in (self.first, self.second)
+        )
+        return first, second
 
     @property
     def principal_axis(self) -> Quantity:

@@ -152,8 +152,8 @@ def attached_times(value: object) -> TimeAxis | None:
         if held.dims != ("time",) or "time" not in held.coords:
             return None
         axis = held["time"]
-        whole = axis.dtype.kind in "iu" and "units" in axis.attrs  # else they may be row numbers
-        times = axis.values.astype(np.float64) if whole else axis.values
+        is_time = axis.dtype.kind in "iu" and "units" in axis.attrs  # else they may be row numbers
+        times = axis.values.astype(np.float64) if is_time else axis.values
         return _time_axis(times, axis.attrs.get("units", "s"))
     if _is_quantity(held):
         held = cast("Any", held).magnitude

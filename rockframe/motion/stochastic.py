@@ -201,8 +201,8 @@ class PointSource:
     @property
     def lowest_corner(self) -> float:
         """The corner frequency, or the lower of two [Hz]."""
-        one = self.corners is Corners.ONE
-        return self.corner_frequency if one else self.two_corners[0]
+        has_one_corner = self.corners is Corners.ONE
+        return self.corner_frequency if has_one_corner else self.two_corners[0]
 
     @property
     def effective_distance(self) -> float:

@@ -81,26 +81,28 @@ def _sliding(along: AlongSteps, name: str, friction: float, body: str) -> Slidin
     return SlidingCheck(body, friction, float(needed), float(first), duration)
 
 
-def sliding_scalars(found: Sequence[SlidingCheck]) -> dict[str, float | bool]:
+def sliding_scalars(checks: Sequence[SlidingCheck]) -> dict[str, float | bool]:
     """Return the scalars of sliding checks, by their names in the schema; none without a check."""
-    if not found:
+    if not checks:
         return {}
-    slides = [each for each in found if each.slides]
+    slides = [check for check in checks if check.slides]
     return {
         "would_slide": bool(slides),
-        "sliding_time": min((each.first for each in slides), default=math.nan),
-        "sliding_duration": max(each.duration for each in found),
+        "sliding_time": min((check.first for check in slides), default=math.nan),
+        "sliding_duration": max(check.duration for check in checks),
     }
 
 
-def friction_words(scalars: Mapping[str, AnyArray | float], found: Sequence[SlidingCheck]) -> str:
+def friction_words(scalars: Mapping[str, AnyArray | float], checks: Sequence[SlidingCheck]) -> str:
     """Say in a sentence whether bodies would slide or, without a check, what friction they needed.
 
     Empty for a run without peaks of forces.
     """
-    if found:
-        several = len(found) > 1
-        words = "; ".join(f"{each.body} {each.words}" if several else each.words for each in found)
+    if checks:
+        several = len(checks) > 1
+        words = "; ".join(
+            f"{check.body} {check.words}" if several else check.words for check in checks
+        )
         return f" {words[0].upper()}{words[1:]}."
     if "peak_friction_demand" not in scalars:
         return ""
@@ -118,11 +120,11 @@ def friction_words(scalars: Mapping[str, AnyArray | float], found: Sequence[Slid
     return f" Friction needed: {peak:.3g}, {level} for {duration:.3g} s in all."
 
 
-def sliding_cautions(found: Sequence[SlidingCheck]) -> Iterator[str]:
+def sliding_cautions(checks: Sequence[SlidingCheck]) -> Iterator[str]:
     """Return a caution for each base that has less friction than a run needs."""
-    for each in found:
-        if each.slides:
-            yield f"{each.body} {each.words}; the model holds it"
+    for check in checks:
+        if check.slides:
+            yield f"{check.body} {check.words}; the model holds it"
 
 
 def share_words(would_slide: AnyArray, *, runs: str = "runs") -> str:

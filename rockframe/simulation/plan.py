@@ -91,7 +91,9 @@ def read_outputs(
                 )
             faults.append(found)
     requested = tuple(name for name in ON_REQUEST if name in names)
-    return requested, tuple(one for name, one in DIAGNOSTICS.items() if name in diagnostics)
+    return requested, tuple(
+        diagnostic for name, diagnostic in DIAGNOSTICS.items() if name in diagnostics
+    )
 
 
 OUTPUT_REQUIREMENTS: Final = {
@@ -136,7 +138,8 @@ def read_body_points(
         else:
             try:
                 x, y = (
-                    to_si(each, LENGTH, owner=owner, name=f"points[{name!r}]") for each in place
+                    to_si(coordinate, LENGTH, owner=owner, name=f"points[{name!r}]")
+                    for coordinate in place
                 )
                 points.append(BodyPoint(name, x, y))
             except RockframeError as problem:
@@ -194,7 +197,7 @@ def _with_reset_peaks(ending: Ending, system: Assembly) -> Ending:
     memory[peaks] = 0.0
     start = replace(ending, memory=memory)
     slips = system.setting.slips_of(start)  # of the highest bodies, as far as they can slip
-    sides = [side for one in slips for side in (one.left, one.right)]
+    sides = [side for slip in slips for side in (slip.left, slip.right)]
     memory[peaks[: len(sides)]] = sides
     return start
 
@@ -236,11 +239,11 @@ class _Requested:
         return {
             "accuracy": vars(self.accuracy),
             "output_step": _time_text(self.output_step),
-            "outputs": [*self.requested, *(one.name for one in self.diagnostics)]
+            "outputs": [*self.requested, *(diagnostic.name for diagnostic in self.diagnostics)]
             if self.histories
             else None,
             "points": {
-                point.name: [quantity_text(each, LENGTH) for each in (point.x, point.y)]
+                point.name: [quantity_text(coordinate, LENGTH) for coordinate in (point.x, point.y)]
                 for point in self.points
             },
             "overturning": str(

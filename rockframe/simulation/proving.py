@@ -195,15 +195,15 @@ def prove_critical_scale(
 
     def overturns(at: float) -> bool | None:
         nonlocal undecided
-        found = prove_run(assembly, plan, scale=at, owner=_CRITICAL).overturns
-        undecided += found is None
-        return found
+        verdict = prove_run(assembly, plan, scale=at, owner=_CRITICAL).overturns
+        undecided += verdict is None
+        return verdict
 
     ends: dict[bool, float] = {}
     for _ in range(_MAX_SEARCH_STEPS):
-        found = overturns(scale)
-        if found is not None:
-            ends[found] = scale
+        verdict = overturns(scale)
+        if verdict is not None:
+            ends[verdict] = scale
         if len(ends) == 2:
             break
         scale *= 1.0 / _GROWTH if True in ends else _GROWTH
@@ -213,9 +213,9 @@ def prove_critical_scale(
     while abs(ends[True] - ends[False]) > share * max(ends.values()):
         for place in _DIVISION_POINTS:
             scale = ends[False] + place * (ends[True] - ends[False])
-            found = None if scale in ends.values() else overturns(scale)
-            if found is not None:
-                ends[found] = scale
+            verdict = None if scale in ends.values() else overturns(scale)
+            if verdict is not None:
+                ends[verdict] = scale
                 break
         else:
             break

@@ -89,8 +89,8 @@ def register(
     faults += [f"two columns are called {name!r}" for name in {*names} if names.count(name) > 1]
     faults += [
         f"{what} is for functions of the state"
-        for what, given in (("name", name), ("unit", unit), ("long_name", long_name))
-        if given is not None
+        for what, argument in (("name", name), ("unit", unit), ("long_name", long_name))
+        if argument is not None
     ]
     rows = [row for row in columns if isinstance(row, Variable)]
     scalars = [row.name for row in rows if row.dims != TIME]
@@ -214,7 +214,11 @@ def _column_faults(row: Any, columns: Sequence[Any]) -> list[str]:
     if not isinstance(row, Variable):
         return [f"columns must be Variables, got {short_repr(row)}"]
     faults = _name_faults(row.name, "a column")
-    labels = {one.name for one in columns if isinstance(one, Variable) and one.dims == (one.name,)}
+    labels = {
+        column.name
+        for column in columns
+        if isinstance(column, Variable) and column.dims == (column.name,)
+    }
     faults += [
         f"column {row.name!r} over {row.dims}: nothing labels {dim!r}; declare a column {dim!r} "
         f"over ({dim!r},)"
@@ -241,7 +245,7 @@ def _diagnostic_faults(value: Diagnostic) -> list[str]:
         [row.name for row in value.rows if row.name in SCHEMA] if name not in DIAGNOSTICS else []
     )
     taken += [name] if name in GROUPS else []
-    faults += [f"there is a variable {one!r} of another meaning" for one in taken]
+    faults += [f"there is a variable {taken_name!r} of another meaning" for taken_name in taken]
     return [*faults, *_unit_faults(value.unit, f"diagnostic {name!r}")]
 
 

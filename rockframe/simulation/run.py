@@ -107,14 +107,16 @@ class Response:
     def summary(self) -> RunSummary:
         """Return the summary of the run that certificates are made from."""
         share = peak_share(self.trajectory, self.system.setting.overturning_angles)
-        shown = run_summary(
+        summary = run_summary(
             self.trajectory, self.events, share, self.plan.duration, in_motion=self.in_motion
         )
         sliding_checks = self.outputs.sliding_checks
-        slides = float(any(each.slides for each in sliding_checks)) if sliding_checks else math.nan
+        slides = (
+            float(any(check.slides for check in sliding_checks)) if sliding_checks else math.nan
+        )
         slips = self.system.setting.slips_of(self.trajectory.ending)
-        slip = max((one.peak for one in slips), default=math.nan)
-        return replace(shown, slides=slides, slip=slip)
+        slip = max((slip_range.peak for slip_range in slips), default=math.nan)
+        return replace(summary, slides=slides, slip=slip)
 
     def cautions(self) -> list[Caution]:
         """Return the warnings about the run."""
@@ -162,10 +164,10 @@ def run_scalars(
     """Return the scalars of a run by their names in the schema, without those of its samples."""
     setting = system.setting
     uplift = compute_or_note(lambda: setting.uplift_angle, math.nan, "the uplift angle", missing)
-    found = scalars(summary, setting, uplift_angle=uplift)
+    values = scalars(summary, setting, uplift_angle=uplift)
     if system.model.links:
-        found["broken_restrainer_count"] = len(broken_links(system.model, summary.ending))
-    return found
+        values["broken_restrainer_count"] = len(broken_links(system.model, summary.ending))
+    return values
 
 
 @dataclass(frozen=True)
@@ -246,13 +248,13 @@ def _proof_labels(proof: Proof, response: Response) -> _Labels:
 def _certificate_labels(certification: Certification, response: Response) -> _Labels:
     """Return the certificate of a run."""
     system, plan = response.system, response.plan
-    found = compute_or_note(
+    certificate = compute_or_note(
         lambda: certify(system, plan, response.summary(), certification, compute_summary),
         None, "the certificate", response.missing,
     )  # fmt: skip
-    if found is None:
+    if certificate is None:
         return _Labels({}, {"certificate": "Not known."})
-    return _Labels(found.values(), found.attributes())
+    return _Labels(certificate.values(), certificate.attributes())
 
 
 def _dataset(labels: _Labels, response: Response) -> xr.Dataset:

@@ -71,8 +71,8 @@ def ground_at(motion: GroundMotion | None, time: Array) -> Array:
     """Return the horizontal and vertical ground accelerations, shape (times, 2) [m s^-2]."""
     still = np.zeros_like(time)
     components = () if motion is None else (motion.si.horizontal, motion.si.vertical)
-    found = [still if signal is None else signal.at(time) for signal in components]
-    return np.column_stack(found or [still, still])
+    accelerations = [still if signal is None else signal.at(time) for signal in components]
+    return np.column_stack(accelerations or [still, still])
 
 
 def compute_outputs(
@@ -93,8 +93,8 @@ def compute_outputs(
             "made more steps than are kept"
         )
     if overturned:  # the fall after overturning does not count
-        kept = until_overturning.time <= run.overturning_time
-        until_overturning = until_overturning.select(kept)
+        in_time = until_overturning.time <= run.overturning_time
+        until_overturning = until_overturning.select(in_time)
     checks = sliding_checks(system, along)
     of_forces, of_settlement = force_peaks(along, until_overturning, load)
     scalars: dict[str, AnyArray | float] = {
@@ -113,20 +113,20 @@ def compute_outputs(
         scalars |= point_peaks(plan.points, along, load)
         places |= point_labels(plan.points)
         values |= point_histories(plan.points, values, load)
-    shown = run.events.kind != SILENT
+    visible = run.events.kind != SILENT
     impulses = observed.events.impulses(load.body.mass)
-    everything = values | {name: each[shown] for name, each in impulses.items()}
+    everything = values | {name: column[visible] for name, column in impulses.items()}
     if "slip" in values:
-        everything["event_slip"] = observed.events.after["slip"][shown]
+        everything["event_slip"] = observed.events.after["slip"][visible]
     if plan.energies:
         across = values["horizontal_displacement"]
         everything |= energy_histories(model, run, across, system.options.slope)
     of_users = _user_outputs(observed, values, everything, along, missing)
-    scalars |= {name: each for name, each in of_users.items() if not SCHEMA[name].dims}
-    everything |= {name: each for name, each in of_users.items() if SCHEMA[name].dims}
+    scalars |= {name: column for name, column in of_users.items() if not SCHEMA[name].dims}
+    everything |= {name: column for name, column in of_users.items() if SCHEMA[name].dims}
     requested = {
-        name: each
-        for name, each in everything.items()
+        name: column
+        for name, column in everything.items()
         if name not in ON_REQUEST or name in plan.requested
     }
     return RunOutputs(requested if plan.histories else {}, scalars, places, checks)
@@ -146,10 +146,10 @@ class _ObservedRun:
         names += numbered_columns("restrainer_force", model.links)
         names += SOIL_FRICTION_COLUMNS if system.setting.stacked else ()
         names += numbered_columns("rotation", model.system.bodies()) if model.shows_bodies else ()
-        self.columns, shown = observe_run(model, run, None if self.whole else names, resolved)
-        shown, last = without_gravity(shown, slope), count + len(events.time)
+        self.columns, columns = observe_run(model, run, None if self.whole else names, resolved)
+        columns, last = without_gravity(columns, slope), count + len(events.time)
         self.values, before, after = (
-            {name: each[part] for name, each in shown.items()}
+            {name: column[part] for name, column in columns.items()}
             for part in (slice(count), slice(count, last), slice(last, None))
         )
         is_impact = (events.kind == IMPACT) & system.setting.struck_by_base
@@ -194,20 +194,20 @@ class _ObservedRun:
         """
         run, slope, load = self.run, self.system.options.slope, self.system.setting.load
         memory, steps = memory_at_outputs(run)[0], run.kept_steps.until(until)
-        shown = {name: each[: len(steps.time)] for name, each in self.columns.items()}
+        columns = {name: column[: len(steps.time)] for name, column in self.columns.items()}
         if STICK in run.events.kind:
             stops = _stopping_events(
                 run, self.events, MAX_STOPPED_SLIP * 2.0 * load.body.half_width
             )
-            kept = ~np.isin(steps.memory_row, stops)
-            steps = replace(steps, values=steps.values[kept], codes=steps.codes[kept])
-            shown = {name: each[kept] for name, each in shown.items()}
+            in_time = ~np.isin(steps.memory_row, stops)
+            steps = replace(steps, values=steps.values[in_time], codes=steps.codes[in_time])
+            columns = {name: column[in_time] for name, column in columns.items()}
         if self.whole:
             moved = steps.ground - np.array([slope.along_gravity, 0.0])
             ground = _horizontal_and_vertical(moved, slope)
-            shown = self._with_derived(without_gravity(shown, slope), steps.time, ground, moved)
+            columns = self._with_derived(without_gravity(columns, slope), steps.time, ground, moved)
         else:
-            shown |= friction_demands(shown, load)
+            columns |= friction_demands(columns, load)
 
         def inside(which: Integers) -> dict[str, AnyArray]:
             places, length = len(FRACTIONS), steps.length[which]
@@ -217,20 +217,20 @@ class _ObservedRun:
             moved, resolved = ground_on_slope(ground, slope)
             modes, rows = (np.repeat(of[which], places) for of in (steps.mode, steps.memory_row))
             states = states.reshape(-1, states.shape[-1])
-            found = observe_states(self.system.model, modes, states, memory, rows, resolved)
-            found = without_gravity(found, slope)
+            values = observe_states(self.system.model, modes, states, memory, rows, resolved)
+            values = without_gravity(values, slope)
             if not self.whole:
-                return found | friction_demands(found, load)
-            return self._with_derived(found, time, ground, moved)
+                return values | friction_demands(values, load)
+            return self._with_derived(values, time, ground, moved)
 
-        return AlongSteps(steps, shown, inside)
+        return AlongSteps(steps, columns, inside)
 
     def _with_derived(
-        self, shown: dict[str, AnyArray], time: Array, ground: Array, moved: Array
+        self, columns: dict[str, AnyArray], time: Array, ground: Array, moved: Array
     ) -> dict[str, AnyArray]:
         """Return columns with what follows from them, and with the state that diagnostics take."""
-        shown = shown | force_histories(shown, moved, self.system.setting.load)
-        return shown | _diagnostic_state(shown, time, ground)
+        columns = columns | force_histories(columns, moved, self.system.setting.load)
+        return columns | _diagnostic_state(columns, time, ground)
 
 
 def _user_outputs(
@@ -241,13 +241,13 @@ def _user_outputs(
     missing: list[str],
 ) -> dict[str, Any]:
     """Return the results of user-defined bases, scenes and diagnostics for a run."""
-    plan, system, found = observed.plan, observed.system, dict[str, Any]()
+    plan, system, outputs = observed.plan, observed.system, dict[str, Any]()
     for own in (system.setting, *system.parts.structural()) if plan.histories else ():
         if isinstance(own, OwnAnswers):
             events = observed.events.select(observed.run.events.kind != SILENT)
             sides = [{**side, "time": events.time} for side in (events.before, events.after)]
             sizes = {TIME[0]: len(values["time"]), EVENT[0]: len(events.time)}
-            found |= compute_or_note(
+            outputs |= compute_or_note(
                 lambda own=own, sides=sides, sizes=sizes: checked_results(
                     own.answers(*map(read_only, (everything, *sides))), sizes
                 ),
@@ -262,8 +262,8 @@ def _user_outputs(
             None, f"the diagnostic {one.name!r}", missing,
         )  # fmt: skip
         if history_and_peak is not None:
-            found[one.name], found[one.rows[1].name] = history_and_peak
-    return found
+            outputs[one.name], outputs[one.rows[1].name] = history_and_peak
+    return outputs
 
 
 def _absolute_peaks(name: str, count: int, along: AlongSteps) -> Array:

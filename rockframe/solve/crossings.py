@@ -136,7 +136,7 @@ def earliest_crossing(
     dip, whether it begins positive or at zero. Where nothing moves, guards have no rates, and a
     dip is found by their values.
     """
-    found, fraction, negative = -1, 2.0, 1.0
+    guard, fraction, negative = -1, 2.0, 1.0
     for i in range(len(tolerance)):
         end_change = span.h * w.new_guards[len(tolerance) + i]
         c0, c1, c2, c3 = _guard_cubic(i, span.h, tolerance, w)
@@ -157,8 +157,8 @@ def earliest_crossing(
         if below >= 0.0:
             root = _first_root(equations, i, below, unpacked, span, tolerance, w)
             if root < fraction:
-                found, fraction, negative = i, root, below
-    return Crossing(found, fraction, negative)
+                guard, fraction, negative = i, root, below
+    return Crossing(guard, fraction, negative)
 
 
 @kernel

@@ -115,19 +115,23 @@ def step_to_event(
     The crossing is found on the dense solution, then corrected by repeated steps. If another guard
     is negative at the end of the shortened step, its crossing is searched in that step.
     """
-    found = earliest_crossing(equations, unpacked, span_of(whole, progress), tolerance, w)
-    if found.guard < 0:
+    crossing = earliest_crossing(equations, unpacked, span_of(whole, progress), tolerance, w)
+    if crossing.guard < 0:
         return whole, -1
-    h = correct_crossing(equations, unpacked, whole, found, tolerance, pieces, progress, steps, w)
+    h = correct_crossing(
+        equations, unpacked, whole, crossing, tolerance, pieces, progress, steps, w
+    )
     for _ in range(len(tolerance)):
-        if h == 0.0 or not another_is_negative(found.guard, tolerance, w):
+        if h == 0.0 or not another_is_negative(crossing.guard, tolerance, w):
             break
         earlier = earliest_crossing(equations, unpacked, span_of(h, progress), tolerance, w)
-        if earlier.guard in (-1, found.guard) or earlier.fraction > 1.0 - SMALL_CORRECTION:
+        if earlier.guard in (-1, crossing.guard) or earlier.fraction > 1.0 - SMALL_CORRECTION:
             break
-        found = earlier
-        h = correct_crossing(equations, unpacked, h, found, tolerance, pieces, progress, steps, w)
-    return h, found.guard
+        crossing = earlier
+        h = correct_crossing(
+            equations, unpacked, h, crossing, tolerance, pieces, progress, steps, w
+        )
+    return h, crossing.guard
 
 
 @kernel

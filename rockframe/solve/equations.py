@@ -172,26 +172,28 @@ def equations_of(
 def runs_as_python(equations: BoundEquations) -> bool:
     """Whether a system runs as plain Python, as nothing is compiled or its equations cannot be."""
     return not COMPILED or any(
-        one.source.failed for one in equations if isinstance(one, BoundFunction)
+        function.source.failed for function in equations if isinstance(function, BoundFunction)
     )
 
 
 def is_fully_compiled(equations: BoundEquations) -> bool:
     """Whether all functions of a system are compiled, those called at events too."""
-    return all(one.source.address for one in equations if isinstance(one, BoundFunction))
+    return all(
+        function.source.address for function in equations if isinstance(function, BoundFunction)
+    )
 
 
 def compile_in_next_run(equations: BoundEquations) -> None:
     """Let the next run compile all functions: for measuring times."""
-    for one in equations:
-        if isinstance(one, BoundFunction):
-            one.source.fallback_seconds = math.inf
+    for function in equations:
+        if isinstance(function, BoundFunction):
+            function.source.fallback_seconds = math.inf
 
 
 def steps_are_compiled(equations: BoundEquations) -> bool:
     """Whether the functions that steps call are compiled."""
-    bounds = (one for one in equations if isinstance(one, BoundFunction))
-    return all(one.source.address or one.source.is_rarely_called for one in bounds)
+    bounds = (function for function in equations if isinstance(function, BoundFunction))
+    return all(function.source.address or function.source.is_rarely_called for function in bounds)
 
 
 @inlined

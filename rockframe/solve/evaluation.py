@@ -36,8 +36,8 @@ def evaluate_guards(
     limits: Vector, out: Vector,
 ) -> None:  # fmt: skip
     """Write the guards of a state as :func:`put_guards`, with the nearest limit of all bodies."""
-    found = system.guards_in(mode, state, slope, Ground(ground_x, ground_y))
-    put_guards(system, found, state, limits, out)
+    guards = system.guards_in(mode, state, slope, Ground(ground_x, ground_y))
+    put_guards(system, guards, state, limits, out)
     size, last = system.coordinates(), system.guards()
     row = WEIGHTS + size
     while row < len(limits):
@@ -56,7 +56,7 @@ def evaluate_guards(
 
 @inlined
 def put_guards(
-    system: Equations, found: Guards, state: Vector, limits: Vector, out: Vector
+    system: Equations, guards: Guards, state: Vector, limits: Vector, out: Vector
 ) -> None:
     """Write guards, then their rates; the last guard is how far the rotation is from its limit."""
     size, last = system.coordinates(), system.guards()
@@ -65,8 +65,8 @@ def put_guards(
         rotation += limits[WEIGHTS + i] * state[i]
         rate += limits[WEIGHTS + i] * state[size + i]
     left = rotation <= 0.0
-    put(found.values, 0, out)
-    put(found.changes, last + 1, out)
+    put(guards.values, 0, out)
+    put(guards.changes, last + 1, out)
     out[last] = limits[LEFT_LIMIT] + rotation if left else limits[RIGHT_LIMIT] - rotation
     out[2 * last + 1] = rate if left else -rate
 

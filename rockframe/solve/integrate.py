@@ -272,8 +272,8 @@ class Tables:
     def close(self, counters: Integers, *, complete: bool = True) -> Steps:
         """Return the steps, and keep no more; say whether they are those of the whole run."""
         if self._closed is None:
-            found = steps_of(self.steps, counters, self._width, exact=self._exact)
-            self._closed, self.steps = replace(found, complete=complete), NO_STEPS
+            steps = steps_of(self.steps, counters, self._width, exact=self._exact)
+            self._closed, self.steps = replace(steps, complete=complete), NO_STEPS
         return self._closed
 
     def events_so_far(self, counters: Integers) -> Events:

@@ -65,10 +65,10 @@ def may_dip(start: float, change: float, end: float, end_change: float) -> bool:
 @inlined
 def some_guard_may_fall(system: HasSizes, h: float, guards: Vector, new_guards: Vector) -> bool:
     """Whether some guard is negative after a step, or may have dipped below zero inside it."""
-    found, count = False, system.guards() + 1
+    some, count = False, system.guards() + 1
     for i in range(count):
-        found |= may_dip(guards[i], h * guards[count + i], new_guards[i], h * new_guards[count + i])
-    return found
+        some |= may_dip(guards[i], h * guards[count + i], new_guards[i], h * new_guards[count + i])
+    return some
 
 
 class RotationInStep(NamedTuple):
@@ -108,14 +108,14 @@ def other_rotation_may_peak(
     size: int, limits: Vector, h: float, state: Vector, new_state: Vector, ratio: float
 ) -> bool:
     """Whether another body may come nearer to its limit inside a step than any has come so far."""
-    found, row = False, WEIGHTS + size
+    some, row = False, WEIGHTS + size
     while row < len(limits):
         rotation = rotation_in_step(row, size, limits, state, new_state)
-        found |= rotation.may_peak(
+        some |= rotation.may_peak(
             h, ratio * limits[row + LEFT_LIMIT], ratio * limits[row + RIGHT_LIMIT]
         )
         row += WEIGHTS + size
-    return found
+    return some
 
 
 @inlined

@@ -129,8 +129,8 @@ class SystemFunction(NamedTuple):
 def _system_function(
     system: Equations, function: Callable[..., None], *, rarely_called: bool = False
 ) -> SystemFunction:
-    (one,) = bind((function,), system, rarely_called=rarely_called)
-    return SystemFunction(one, numbers_in(system))
+    (bound,) = bind((function,), system, rarely_called=rarely_called)
+    return SystemFunction(bound, numbers_in(system))
 
 
 @background_entry
@@ -327,7 +327,7 @@ def observe_run(
         np.concatenate([row[not_in_steps], before, before + 1]),
         ground[places],
     )
-    chosen = [i for i, one in enumerate(model.columns) if names is None or one.name in names]
+    chosen = [i for i, column in enumerate(model.columns) if names is None or column.name in names]
     out = np.empty((len(chosen), len(steps.time)))
     _observe(
         model, steps.values, steps.codes, memory, np.array(chosen, dtype=np.int64), out,
@@ -339,12 +339,12 @@ def observe_run(
 
 def _named(model: ContactModel, columns: Sequence[Column], out: Matrix) -> dict[str, Vector]:
     """Return columns by their names, in the units of the schema: multiplied by masses."""
-    found: dict[str, Vector] = {}
+    named: dict[str, Vector] = {}
     for column, values in zip(columns, out, strict=True):
         if column.per_mass:
             values *= model.mass * column.mass_ratio
-        found[column.name] = values
-    return found
+        named[column.name] = values
+    return named
 
 
 def energies_of(model: ContactModel, trajectory: Trajectory) -> Matrix:

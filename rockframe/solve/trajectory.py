@@ -68,7 +68,7 @@ class Steps:
         size, u = model.system.coordinates(), fraction[:, None]
         h = self.length[which, None, None]
         state, new, first, last = (
-            each[row, None] for each in (self.state, self.slope) for row in (which - 1, which)
+            values[row, None] for values in (self.state, self.slope) for row in (which - 1, which)
         )
         x, v, w = (slice(0, size), slice(size, 2 * size), slice(2 * size, None))
         rates = slice(size, None)

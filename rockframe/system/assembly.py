@@ -95,7 +95,7 @@ def _refuse_shared_columns(
 ) -> None:
     """Refuse two bases with a column of the same name: one column would be lost."""
     names = [
-        {column.name for column in each.support.base_numbers.columns} for each in (upper, lower)
+        {column.name for column in body.support.base_numbers.columns} for body in (upper, lower)
     ]
     shared = sorted(names[0] & names[1])
     if shared:

@@ -50,7 +50,7 @@ class BlockOnCapSetting(Setting):
 
     def words(self) -> Words:
         """Describe the block on its pads, and both bodies on the soil."""
-        cap, (pads, soil) = self.cap, (each.words() for each in self.supports)
+        cap, (pads, soil) = self.cap, (support.words() for support in self.supports)
         size = f"{2.0 * cap.half_width:.6g} m by {2.0 * cap.half_height:.6g} m"
         rule = restraint_words(self.options)
         return Words(
@@ -87,10 +87,10 @@ class BlockOnCapSetting(Setting):
     @property
     def _rest(self) -> list[Pose]:
         """Equilibrium of block and cap at rest; AssemblyError if there is none."""
-        found = self._effective_statics.rest
-        if found is None:
+        poses = self._effective_statics.rest
+        if poses is None:
             raise AssemblyError(["the block and the cap under it find no rest under their weight"])
-        return found
+        return poses
 
     @property
     def rest(self) -> "StackRest":
@@ -120,11 +120,11 @@ class BlockOnCapSetting(Setting):
     def _statics(self, cap_mass: float, cap_inertia: float) -> StandingBodies:
         bodies = self._chain_bodies(cap_mass, cap_inertia)
         links = tuple(
-            standing_body(BodyOnBase(one.body, one.base.law), one.mass, one.top, one.offset)
-            for one in bodies
+            standing_body(BodyOnBase(body.body, body.base.law), body.mass, body.top, body.offset)
+            for body in bodies
         )
         chain = StandingChain(links, self.slope.along_gravity)
-        return StandingBodies(chain, self.body.mass, tuple(one.base for one in bodies))
+        return StandingBodies(chain, self.body.mass, tuple(body.base for body in bodies))
 
     @property
     def _effective_cap(self) -> tuple[float, float]:
@@ -165,13 +165,13 @@ class CoupledSetting(BlockOnCapSetting):
 
     def cautions(self) -> list[str]:
         """Return the warnings of pads and soil, and about a cap that is too light."""
-        found = super().cautions()
+        cautions = super().cautions()
         if self.cap.mass < MIN_CAP_MASS_RATIO * self.body.mass:
-            found.append(
+            cautions.append(
                 f"the cap's mass, {self.cap.mass:.4g} kg, is less than {MIN_CAP_MASS_RATIO:g} of "
                 "the building's; the coupled equations are solved with that share of it"
             )
-        return found
+        return cautions
 
     def equations(self, pads: BaseWords, soil: BaseWords) -> list[tuple[str, str]]:
         """Return each contact state with the equation that governs it."""
@@ -193,10 +193,10 @@ class CoupledSetting(BlockOnCapSetting):
 
     def equilibrium(self) -> dict[str, float]:
         """Return settlements and reactions at rest, by their names in the schema."""
-        found = super().equilibrium()
+        values = super().equilibrium()
         if not self.leans:
-            return found
-        return found | static_values(self._effective_statics.reactions(self._rest))
+            return values
+        return values | static_values(self._effective_statics.reactions(self._rest))
 
     @cached_property
     def rest_rotation(self) -> float:
@@ -232,7 +232,7 @@ class SlidingCoupledSetting(CoupledSetting):
 
         rest = None
         if self.leans:
-            rest = [AtRest(one.state.rotation, one.state.vertical) for one in self._rest]
+            rest = [AtRest(pose.state.rotation, pose.state.vertical) for pose in self._rest]
         return block_on_cap(*self.bodies(), self.body.mass, rest, self.frictions)
 
     def slips_of(self, ending: Ending) -> tuple[SlipRange, ...]:
@@ -242,8 +242,8 @@ class SlidingCoupledSetting(CoupledSetting):
     def beyond_edges(self, ending: Ending) -> list[str]:
         """Warn of a block that slipped beyond the edge of its cap."""
         slips, widths = self.slips_of(ending)[0], (self.body.half_width, self.cap.half_width)
-        found = overhang_caution(slips, 0.0, *widths, self.sliding_bodies)
-        return [found] if found else []
+        caution = overhang_caution(slips, 0.0, *widths, self.sliding_bodies)
+        return [caution] if caution else []
 
 
 class CascadeSetting(BlockOnCapSetting):

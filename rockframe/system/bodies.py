@@ -207,12 +207,16 @@ def block_with_cap(block: BlockSI, cap: Cap) -> SupportedBody:
 def combine_masses(half_width: float, masses: Sequence[PlaneMass]) -> SupportedBody:
     """Return rigidly connected masses, placed from the middle of a base, as one body on it."""
     # sums without math.fsum, since a mass may have a value in each of many cases
-    mass = sum((one.mass for one in masses), 0.0)
-    beside = sum((one.mass * one.x for one in masses), 0.0) / mass
-    height = sum((one.mass * one.y for one in masses), 0.0) / mass
+    mass = sum((placed.mass for placed in masses), 0.0)
+    beside = sum((placed.mass * placed.x for placed in masses), 0.0) / mass
+    height = sum((placed.mass * placed.y for placed in masses), 0.0) / mass
     inertia = 0.0
-    for one in masses:
-        inertia = inertia + one.inertia + one.mass * ((one.y - height) ** 2 + (one.x - beside) ** 2)
+    for placed in masses:
+        inertia = (
+            inertia
+            + placed.inertia
+            + placed.mass * ((placed.y - height) ** 2 + (placed.x - beside) ** 2)
+        )
     shape_factor = mass * (half_width**2 + height**2) / inertia
     return SupportedBody(half_width, height, mass, inertia, shape_factor, beside)
 

@@ -104,9 +104,9 @@ def _stiff_wall_faults(wall: RearWall, parts: Parts) -> list[str]:
 def _link_faults(parts: Parts) -> list[str]:
     """Return the faults of links with other parts."""
     faults: list[str] = []
-    base = next((one for one in (parts.pads, parts.soil) if one is not None), None)
+    base = next((part for part in (parts.pads, parts.soil) if part is not None), None)
     if parts.cap is not None:
-        kinds = " and a ".join(dict.fromkeys(type(one).__name__ for one in parts.links))
+        kinds = " and a ".join(dict.fromkeys(type(part).__name__ for part in parts.links))
         faults.append(
             f"a {kinds} and a CushionCap are given together; give the cap as the lowest body of a "
             "Stack"
@@ -155,17 +155,17 @@ def _stack_faults(stack: Stack, parts: Parts) -> list[str]:
         faults.append(f"a Stack and a {name} are both given; the {name} is one of its bodies")
     if parts.cap is not None:
         faults.append("a Stack and a CushionCap are both given; give the cap as its lowest body")
-    bases = [one for one in (parts.pads, parts.soil, parts.ground) if one is not None]
+    bases = [part for part in (parts.pads, parts.soil, parts.ground) if part is not None]
     if parts.pads is not None and parts.soil is not None and parts.cap is None:
         faults.append("a Stack stands on a TwoSpringSupport or on a WinklerSoil: give one of them")
     standing = (*stack.interfaces, *bases)
     faults += [
         "the bodies of a Stack stand on TwoSpringSupport, WinklerSoil or RigidGround, not on "
-        f"{type(one).__name__}"
-        for one in standing
-        if slot_of_class(type(one)) not in BASE_SLOTS or isinstance(one, OwnBase)
+        f"{type(part).__name__}"
+        for part in standing
+        if slot_of_class(type(part)) not in BASE_SLOTS or isinstance(part, OwnBase)
     ]
-    if any(isinstance(one, RigidGround) and one.si.restitution is not None for one in standing):
+    if any(isinstance(part, RigidGround) and part.si.restitution is not None for part in standing):
         faults.append(
             "RigidGround: in a Stack impacts are plastic, and what they leave of the velocities of "
             "all bodies is computed; restitution must not be given"
@@ -329,7 +329,7 @@ def _block_slides(parts: Parts, options: Options) -> bool:
     behind_wall = parts.wall is not None and not parts.wall.elastic
     of_stages = parts.cap is not None and options.coupling is Coupling.CASCADE
     bases = (parts.components.get(slot) for slot in ("pads", "soil", "ground"))
-    under = next((one for one in bases if one is not None), None)
+    under = next((base for base in bases if base is not None), None)
     slippery = under is not None and base_friction(under, options) is not None
     return slippery and not (behind_wall or of_stages)
 

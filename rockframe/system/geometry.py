@@ -113,7 +113,7 @@ def geometry_of(scene: Assembly) -> Geometry:
     block, frame = parts.block_si, None if parts.frame is None else parts.frame.si
     cap = None if parts.cap is None else parts.cap_si
     members = parts.block.members if isinstance(parts.block, FrameEquivalent) else ()
-    body, sinks = setting.body, [each.settlement for each in setting.supports]
+    body, sinks = setting.body, [support.settlement for support in setting.supports]
     level = 2.0 * cap.half_height if setting.stacked and cap is not None else 0.0
     return Geometry(
         outline=_rectangle(block.half_width, block.height),
@@ -155,13 +155,13 @@ def _linked_points(setting: Setting) -> tuple[LinkedPoints, ...]:
         return tuple(LinkedPoints(np.array([(x, top), (x, 0.0)]), (0, -1)) for x in axes)
     if not isinstance(setting, StackSetting):
         return ()
-    found: list[LinkedPoints] = []
-    for one in setting.links[: len(setting.link_names)]:
-        points = np.array(one.ends)
-        if isinstance(one.part, Tendon):  # from the top of its body through it
-            points[0, 1] += setting.bodies[one.on].centre_height + setting.tops[one.on]
-        found.append(LinkedPoints(points, (one.on, one.to)))
-    return tuple(found)
+    linked: list[LinkedPoints] = []
+    for link in setting.links[: len(setting.link_names)]:
+        points = np.array(link.ends)
+        if isinstance(link.part, Tendon):  # from the top of its body through it
+            points[0, 1] += setting.bodies[link.on].centre_height + setting.tops[link.on]
+        linked.append(LinkedPoints(points, (link.on, link.to)))
+    return tuple(linked)
 
 
 def _stack_geometry(stack: Stack, scene: Assembly) -> Geometry:
@@ -178,7 +178,7 @@ def _stack_geometry(stack: Stack, scene: Assembly) -> Geometry:
     beside += offsets[0]
     wall = scene.parts.wall
     k = 0 if wall is None else wall.si.on_body - 1
-    place = sum(offsets[k:]), sum(one.height for one in bodies[k + 1 :])
+    place = sum(offsets[k:]), sum(under.height for under in bodies[k + 1 :])
     return Geometry(
         outline=_rectangle(block.half_width, block.height),
         half_width=block.half_width,
@@ -200,11 +200,11 @@ def system_html(scene: Assembly, name: str) -> str:
     """Return a drawing and the numbers of a scene as HTML."""
     setting, options = scene.setting, scene.options
     rows = {"model": setting.model}
-    pieces = [one for part in scene.parts.structural() for one in _named_parts(part)]
+    pieces = [piece for part in scene.parts.structural() for piece in _named_parts(part)]
     for number, (words, part) in enumerate(pieces):
         alike = [other for other, _ in pieces[: number + 1]].count(words)
         numbers = readable_arguments(part.to_dict())
-        text = ", ".join(f"{one} {value}" for one, value in numbers.items())
+        text = ", ".join(f"{label} {value}" for label, value in numbers.items())
         rows[words if alike == 1 else f"{words} {alike}"] = text
     left, right = setting.overturning_angles
     to_left, to_right = (degrees_text(side) for side in (left, right))
@@ -221,14 +221,14 @@ def system_html(scene: Assembly, name: str) -> str:
 
 def _named_parts(part: Component) -> list[tuple[str, Component]]:
     """Return the bodies and bases of which a part consists, then the part, each with its name."""
-    found: list[tuple[str, Component]] = [(type(part).__name__, part)]
+    named: list[tuple[str, Component]] = [(type(part).__name__, part)]
     if isinstance(part, RockingFrame):
-        return [("column", part.column), *found]
+        return [("column", part.column), *named]
     if not isinstance(part, Stack):
-        return found
+        return named
     bodies = [(f"body {k}", body) for k, body in enumerate(part.bodies, 1)]
     bases = [(f"beneath body {k}", base) for k, base in enumerate(part.interfaces, 1)]
-    return [*bodies, *bases, *found]
+    return [*bodies, *bases, *named]
 
 
 def scene_polygons(geometry: Geometry) -> list[Polygon]:
@@ -239,32 +239,32 @@ def scene_polygons(geometry: Geometry) -> list[Polygon]:
     below = 0.0 if geometry.stacked else pad
     reach, depth = 1.7 * half, 0.5 * half
     band = _rectangle(reach, depth, y=-depth - below)
-    found = [("ground" if geometry.soil_settlement is None else "soil", band)]
+    polygons = [("ground" if geometry.soil_settlement is None else "soil", band)]
     if geometry.wall is not None:
-        found.append(("ground", geometry.wall))
+        polygons.append(("ground", geometry.wall))
     if geometry.cap_outline is not None:
-        found.append(("cap", geometry.cap_outline))
-    found += [("cap", one.outline) for one in geometry.lower]
+        polygons.append(("cap", geometry.cap_outline))
+    polygons += [("cap", body.outline) for body in geometry.lower]
     raised = lift if geometry.stacked else np.zeros(2)
     if pad:
         level = geometry.base_level if geometry.stacked else -pad
         for side in (-0.83, 0.83):
             place = side * geometry.half_width
-            found.append(("pad", _rectangle(0.17 * geometry.half_width, pad, place, level)))
+            polygons.append(("pad", _rectangle(0.17 * geometry.half_width, pad, place, level)))
     if geometry.beam is not None:
-        found += [("member", geometry.block + np.array([x, 0.0])) for x in geometry.columns]
-        found.append(("member", geometry.beam))
+        polygons += [("member", geometry.block + np.array([x, 0.0])) for x in geometry.columns]
+        polygons.append(("member", geometry.beam))
     else:
-        found.append(("block", geometry.block + raised))
+        polygons.append(("block", geometry.block + raised))
     base = geometry.base_position
-    found += [("member", member + base + raised) for member in geometry.members]
+    polygons += [("member", member + base + raised) for member in geometry.members]
     centres = [np.array([geometry.centre]) + base + raised]
-    centres += [np.array([one.centre]) for one in geometry.lower]
+    centres += [np.array([body.centre]) for body in geometry.lower]
     if geometry.stacked and geometry.cap is not None:
         centres.append(np.array([(0.0, 0.5 * geometry.cap[1])]))
     sine, cosine = np.sin(geometry.inclination), np.cos(geometry.inclination)
     along_base = np.array([(cosine, sine), (-sine, cosine)])
     return [
         Polygon(tone, [(float(x), float(y)) for x, y in points @ along_base])
-        for tone, points in (*found, *(("block", centre) for centre in centres))
+        for tone, points in (*polygons, *(("block", centre) for centre in centres))
     ]

@@ -98,15 +98,15 @@ class PlacedLink:
         if isinstance(self.part, Restrainer | Tendon):
             return tie_law(self.part, mass)
         if isinstance(self.part, OwnLink):
-            found = self.part.law(mass)
-            faults = law_faults(found)
+            numbers = self.part.law(mass)
+            faults = law_faults(numbers)
             if faults:
                 raise AssemblyError([f"{self.name}: {fault}" for fault in faults])
-            return found
+            return numbers
         if isinstance(self.part, RearWall):
-            given = self.part.si
-            stiffness, damping = given.stiffness / mass, (given.damping or 0.0) / mass
-            return LinkNumbers(Bumper(stiffness, damping, given.gap or 0.0), stiffness, damping)
+            bumper = self.part.si
+            stiffness, damping = bumper.stiffness / mass, (bumper.damping or 0.0) / mass
+            return LinkNumbers(Bumper(stiffness, damping, bumper.gap or 0.0), stiffness, damping)
         return LinkNumbers(SteadyForce(math.hypot(*self.constant_force) / mass), 0.0)
 
     @property
@@ -150,31 +150,31 @@ class PlacedLink:
                 "while touched"
             )
         other = "the ground" if self.to < 0 else f"body {self.to + 1}"
-        found = [
+        phrases = [
             f"from body {self.on + 1} at ({x:.6g}, {y:.6g}) m to {other} at ({to_x:.6g}, "
             f"{to_y:.6g}) m"
         ]
         if isinstance(self.part, Restrainer | Tendon):
-            found += tie_law_words(self.part)
-        return ", ".join(found)
+            phrases += tie_law_words(self.part)
+        return ", ".join(phrases)
 
 
 def tie_law_words(part: Restrainer | Tendon) -> list[str]:
     """Describe the law of a restrainer or of a tendon."""
     numbers = part.si
-    found = [f"{numbers.stiffness:.6g} N/m"]
-    found += [
+    phrases = [f"{numbers.stiffness:.6g} N/m"]
+    phrases += [
         f"{name} {value:.6g} {unit}"
         for name, unit in (("slack", "m"), ("preload", "N"), ("damping", "N s/m"))
         if (value := getattr(numbers, name, None))
     ]
     if numbers.strength is not None:
         verb = "breaks" if numbers.brittle else "yields"
-        found.append(f"{verb} at {numbers.strength:.6g} N")
+        phrases.append(f"{verb} at {numbers.strength:.6g} N")
     if getattr(numbers, "breaking_elongation", None):
-        found.append(f"breaks as it is {numbers.breaking_elongation:.6g} m longer")
+        phrases.append(f"breaks as it is {numbers.breaking_elongation:.6g} m longer")
     pushes = getattr(numbers, "compression", False)
-    return [*found, "pulls and pushes" if pushes else "pulls only"]
+    return [*phrases, "pulls and pushes" if pushes else "pulls only"]
 
 
 def tie_law(part: Restrainer | Tendon, mass: float) -> LinkNumbers:
@@ -201,7 +201,7 @@ def place_links(
 ) -> tuple[PlacedLink, ...]:
     """Return the places of links on stacked bodies; bodies are listed from the top down."""
     names, faults = link_labels(parts), duplicate_name_faults(parts)
-    found = list[PlacedLink]()
+    placed = list[PlacedLink]()
     for part, name in zip(parts, names, strict=True):
         on, to = part.si.on_body - 1, _other_body(part, len(bodies))
         missing = [k + 1 for k in (on, to) if k >= len(bodies)]
@@ -229,13 +229,13 @@ def place_links(
         far = max(abs(place) for end in ends for place in end)
         if not math.isfinite(far * far * max(getattr(part.si, "stiffness", None) or 1.0, 1.0)):
             faults.append(f"{name}: its moments are larger than a computer's numbers can be")
-        one = PlacedLink(part, name, on, points[0], to, points[1], ends)
-        if one.length == 0.0 and isinstance(part, Restrainer) and part.si.preload:
+        link = PlacedLink(part, name, on, points[0], to, points[1], ends)
+        if link.length == 0.0 and isinstance(part, Restrainer) and part.si.preload:
             faults.append(f"{name}: its points meet, so that its preload has no direction")
-        found.append(one)
+        placed.append(link)
     if faults:
         raise AssemblyError(list(dict.fromkeys(faults)))
-    return tuple(found)
+    return tuple(placed)
 
 
 def _other_body(part: Link, count: int) -> int:

@@ -145,14 +145,16 @@ def read_option(kind: type[Option], value: object, name: str, faults: list[str])
 
 def read_option_number(argument: object, name: str, faults: list[str]) -> float:
     """Return an option that is a number; if it is wrong, add to faults and give the default."""
-    one = NUMERIC_OPTIONS[name]
+    option = NUMERIC_OPTIONS[name]
     if argument is None:
-        return one.default
+        return option.default
     try:
-        value = to_si(argument, one.measure, owner="System", name=name, condition=one.condition)
+        value = to_si(
+            argument, option.measure, owner="System", name=name, condition=option.condition
+        )
     except RockframeError as problem:
         faults.append(str(problem))
-        return one.default
+        return option.default
     return value + 0.0  # no negative zero
 
 

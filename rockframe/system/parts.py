@@ -100,11 +100,11 @@ def support_of(part: Component, load: BaseLoad) -> Support:
     make = None if kind is None else _KINDS[kind].support
     if make is None:  # only bases are in the slots of bases
         raise TypeError
-    found: Any = make(part, load)
-    if not isinstance(found, Support):
-        msg = f"{type(part).__name__}.support must return a Support, got {short_repr(found)}"
+    support: Any = make(part, load)
+    if not isinstance(support, Support):
+        msg = f"{type(part).__name__}.support must return a Support, got {short_repr(support)}"
         raise AssemblyError([msg])
-    return found
+    return support
 
 
 def _subclass_faults(part: Component, known: type) -> list[str]:
@@ -181,12 +181,16 @@ class Parts:
     motion: GroundMotion | None = field(init=False, repr=False, compare=False)
 
     def __post_init__(self) -> None:
-        found = dict(self.filled)
-        vars(self).update({slot: found.get(slot) for slot in BUILTIN_SLOTS if slot != RESTRAINER})
-        components = {slot: part for slot, part in found.items() if slot != "motion"}
+        slots = dict(self.filled)
+        vars(self).update({slot: slots.get(slot) for slot in BUILTIN_SLOTS if slot != RESTRAINER})
+        components = {slot: part for slot, part in slots.items() if slot != "motion"}
         kinds = {slot: unnumbered_slot(slot) for slot in components}
         stiff = self.wall if self.wall is not None and not self.wall.elastic else None
-        links = [one for one in components.values() if isinstance(one, Link) and one is not stiff]
+        links = [
+            component
+            for component in components.values()
+            if isinstance(component, Link) and component is not stiff
+        ]
         signature = frozenset(kinds.values()) - {"ground"}
         if self.wall is not stiff:
             signature = signature - {"wall"} | {RESTRAINER}
@@ -210,13 +214,13 @@ class Parts:
 
     def __getitem__(self, slot: str) -> Component:
         """Return the part in a slot; LabelError if it is empty."""
-        found = dict(self.filled)
-        if slot not in found:
-            known = ", ".join(map(repr, found))
-            near = did_you_mean(slot, found) or ";"
+        slots = dict(self.filled)
+        if slot not in slots:
+            known = ", ".join(map(repr, slots))
+            near = did_you_mean(slot, slots) or ";"
             msg = f"the scene has no part {short_repr(slot)}{near} It has {known}"
             raise LabelError(msg)
-        return cast("Component", found[slot])
+        return cast("Component", slots[slot])
 
     def __iter__(self) -> Iterator[Component | GroundMotion]:
         """Return the parts, in a fixed order."""
@@ -264,7 +268,7 @@ class Parts:
 
 def sort_parts(values: Sequence[object], faults: list[str]) -> Parts:
     """Put each part in its slot; duplicates, and objects that are not parts, become faults."""
-    found: dict[str, Any] = {}
+    slots: dict[str, Any] = {}
     for part in values:
         kind = registered_class(type(part))
         if kind is None:
@@ -272,15 +276,15 @@ def sort_parts(values: Sequence[object], faults: list[str]) -> Parts:
             continue
         slot = _KINDS[kind].slot
         if slot == RESTRAINER:
-            count = sum(unnumbered_slot(one) == RESTRAINER for one in found)
+            count = sum(unnumbered_slot(filled) == RESTRAINER for filled in slots)
             slot = f"{slot}_{count + 1}" if count else slot
-        elif slot in found:
+        elif slot in slots:
             name = type(part).__name__
             faults.append(
-                f"{name} is given twice: {short_repr(found[slot])} and {short_repr(part)}"
+                f"{name} is given twice: {short_repr(slots[slot])} and {short_repr(part)}"
             )
             continue
-        found[slot] = part
+        slots[slot] = part
         if kind is not type(part) and isinstance(part, Component):
             faults += _subclass_faults(part, kind)
-    return Parts.of(found)
+    return Parts.of(slots)

@@ -74,10 +74,10 @@ class RearWallSetting(RigidGroundSetting):
 
     def start_faults(self, rotation: float, has_vertical_start: bool) -> list[str]:
         """Return the faults of an initial state; a rotation into the wall is one."""
-        found = super().start_faults(rotation, has_vertical_start)
+        faults = super().start_faults(rotation, has_vertical_start)
         if rotation * self.direction < 0.0:
-            found.append(f"InitialState: a rotation to the {self.wall.given.side} {_INTO_WALL}")
-        return found
+            faults.append(f"InitialState: a rotation to the {self.wall.given.side} {_INTO_WALL}")
+        return faults
 
     def faults_of_velocity(self, rotation: float, angular_velocity: float) -> list[str]:
         """Return the fault of an upright body that would start with a velocity into the wall."""

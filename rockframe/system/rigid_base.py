@@ -30,8 +30,8 @@ def rigid_base_load(setting: StackedBodies, k: int, tied: Sequence[LinkForce]) -
     normal, couple, shear = load.weight, 0.0, 0.0
     x_base, y_base = setting.base_of(k)
     x_centre = x_base + load.body.eccentricity
-    for one, pull in zip(setting.links, tied, strict=True):
-        for body, end, sign in ((one.on, one.ends[0], -1.0), (one.to, one.ends[1], 1.0)):
+    for link, pull in zip(setting.links, tied, strict=True):
+        for body, end, sign in ((link.on, link.ends[0], -1.0), (link.to, link.ends[1], 1.0)):
             if 0 <= body <= k:
                 x, y = sign * setting.body.mass * pull.force * pull.direction
                 normal, shear = normal - y, shear + x
@@ -49,7 +49,7 @@ class UpliftLimits(NamedTuple):
 
     def words(self) -> str:
         """Write the accelerations; one if both sides are equal."""
-        left, right = (f"{one:.4g} m s^-2" for one in self[:2])
+        left, right = (f"{acceleration:.4g} m s^-2" for acceleration in self[:2])
         if left == right:
             return left
         return f"{left} to the right, which tips it to the left, or {right} to the left"
@@ -74,10 +74,10 @@ def rocking_moment(
     side, half = (1.0, load.body.right) if rotation > 0.0 else (-1.0, load.body.left)
     sine, versine = math.sin(abs(rotation)), 2.0 * math.sin(0.5 * rotation) ** 2
     arm = half * (1.0 - versine) - load.body.centre_height * sine
-    ends = [one.ends for one in setting.links]
+    ends = [link.ends for link in setting.links]
     pivot = (middle + side * load.body.half_width, level)
     tied = links_of_rocking_bodies(setting.chain_links, ends, k, pivot, rotation)
-    pull = sum(float(one.loads[0]) for one in tied)
+    pull = sum(float(link.loads[0]) for link in tied)
     return side * load.weight * arm - setting.body.mass * pull, tied
 
 
@@ -109,18 +109,18 @@ def rocking_statics(setting: StackedBodies, rotation: float) -> Statics:
     # rise of the highest centre of mass; moment of all weights about the middle of the lowest base
     rise, base_moment = 0.0, moment
     for j in range(len(setting.bodies) - 1, -1, -1):
-        one, (place, level) = setting.bodies[j], setting.base_of(j)
-        across, up = place + one.eccentricity, level + one.centre_height
+        body, (place, level) = setting.bodies[j], setting.base_of(j)
+        across, up = place + body.eccentricity, level + body.centre_height
         if j <= k and rotation != 0.0:
             away, above = side * (corner - across), up - pivot_level
             across = corner - side * (away * (1.0 - versine) - above * sine)
             rise = away * sine - above * versine
-        base_moment += setting.gravity * one.mass * across
-    down = math.fsum(setting.gravity * one.mass for one in setting.bodies)
-    for one, pull in zip(setting.links, tied, strict=True):  # links to the ground are external
-        if one.to < 0:
+        base_moment += setting.gravity * body.mass * across
+    down = math.fsum(setting.gravity * body.mass for body in setting.bodies)
+    for link, pull in zip(setting.links, tied, strict=True):  # links to the ground are external
+        if link.to < 0:
             x, y = -mass * pull.force * pull.direction
-            across, up = one.ends[0] + pull.displacement
+            across, up = link.ends[0] + pull.displacement
             base_moment += x * up - y * across
             down -= y
     single = len(setting.bodies) == 1
@@ -141,23 +141,23 @@ def statics_beyond_uplift(
     `closed` are the equilibria with all rigid bases in full contact. Beyond the rotation at which
     a corner first lifts from a rigid base, all bodies above rotate about the other corner.
     """
-    found: list[Statics | None] = [None] * len(rotations)
+    states: list[Statics | None] = [None] * len(rotations)
     for side in (1, -1):
         before, lifted, path = 0.0, None, None
         joints = [_Joint(setting, k, side) for k, rigid in enumerate(setting.rigid) if rigid]
-        here = [i for i, each in enumerate(rotations) if math.copysign(1.0, each) == side]
+        here = [i for i, rotation in enumerate(rotations) if math.copysign(1.0, rotation) == side]
         for i in sorted(here, key=lambda i: abs(rotations[i])):
             if lifted is None:
                 lifted = _first_uplift(joints, before, rotations[i])
                 if lifted is None:
-                    before, found[i] = rotations[i], closed[i]
+                    before, states[i] = rotations[i], closed[i]
                     continue
                 path = EquilibriumPath(lifted.rotation, lifted.equilibrium)
             if path is None:
                 break
             path, poses = lifted.bodies.chain.held_at(path, rotations[i])
-            found[i] = None if poses is None else lifted.bodies.statics_of(poses)
-    return found
+            states[i] = None if poses is None else lifted.bodies.statics_of(poses)
+    return states
 
 
 class _Uplift(NamedTuple):
@@ -201,14 +201,14 @@ class _Joint:
 
     def rotations(self, poses: Sequence[Pose]) -> list[float]:
         """Return the rotations of all bodies on their bases; 0 for the body on this base."""
-        found = [one.state.rotation for one in poses]
-        return [*found[: self.index], 0.0, *found[self.index :]]
+        rotations = [pose.state.rotation for pose in poses]
+        return [*rotations[: self.index], 0.0, *rotations[self.index :]]
 
     def equilibrium_at_uplift(self, rotation: float) -> ChainEquilibrium:
         """Return the equilibrium in which the corner lifts."""
         chain, (poses,) = self.bodies.chain, self.closed.curve([rotation])
-        found = chain.poses_at(self.rotations(poses or [])) or []
-        return ChainEquilibrium.from_poses(chain, found)
+        poses_at_uplift = chain.poses_at(self.rotations(poses or [])) or []
+        return ChainEquilibrium.from_poses(chain, poses_at_uplift)
 
     def uplift_margin(self, rotation: float) -> float:
         """Return by how much the couple on the highest body is below that which lifts a corner."""

@@ -79,20 +79,20 @@ class RigidGroundSetting(Setting):
 
     def cautions(self) -> list[str]:
         """Return warnings about the restitution."""
-        found = restitution_cautions(self.restitution, self.body.maximum_restitution)
+        cautions = restitution_cautions(self.restitution, self.body.maximum_restitution)
         left, right = (
             self.body.gyration_square_about(d) for d in (self.body.left, self.body.right)
         )
         # a block that lands on a corner has rocked about the other one
-        for side, one, ratio in zip(
+        for side, restitution, ratio in zip(
             ("left", "right"), self.restitution, (right / left, left / right), strict=True
         ):
-            if one > sqrt(ratio) + ROUNDING:
-                found.append(
+            if restitution > sqrt(ratio) + ROUNDING:
+                cautions.append(
                     f"impacts on the {side} corner, about which the block has more inertia than "
                     f"about the other one, give energy with a restitution above {sqrt(ratio):.6g}"
                 )
-        return found
+        return cautions
 
     def contact_model(self) -> ContactModel:
         """Return Housner's equations."""

@@ -145,7 +145,7 @@ class TendonFrameSetting(RockingFrameSetting):
     @cached_property
     def tendon_laws(self) -> tuple[LinkNumbers, ...]:
         """The tendons as the equations take them."""
-        return tuple(tie_law(one, self.body.mass) for one in self.tendons)
+        return tuple(tie_law(tendon, self.body.mass) for tendon in self.tendons)
 
     def contact_model(self) -> ContactModel:
         """Return the equations of the columns and their tendons."""
@@ -158,12 +158,12 @@ class TendonFrameSetting(RockingFrameSetting):
     def tendon_forces(self, rotation: float) -> list[float]:
         """Return the force of each tendon, :eq:`eq-rocking-frame-tendon` [N]."""
         elongation = 4.0 * self.frame.column.half_width * math.sin(0.5 * abs(rotation))
-        stretch, found = Stretch(elongation, 0.0, 0.0, 0.0, 0.0), list[float]()
-        for one in self.tendon_laws:
-            law, own = one.law, np.zeros(one.law.variables())
+        stretch, forces = Stretch(elongation, 0.0, 0.0, 0.0, 0.0), list[float]()
+        for tendon_law in self.tendon_laws:
+            law, own = tendon_law.law, np.zeros(tendon_law.law.variables())
             force = law.force(law.starting(stretch, own), stretch, own)
-            found.append(self.body.mass * force)
-        return found
+            forces.append(self.body.mass * force)
+        return forces
 
     def total_tendon_force(self, rotation: float) -> float:
         """Return the force of all tendons of all columns [N]."""
@@ -184,28 +184,28 @@ class TendonFrameSetting(RockingFrameSetting):
 
     def _statics_at(self, rotation: float) -> Statics:
         """Return the equilibrium at a rotation, with the tendons."""
-        found, half = super()._statics_at(rotation), self.frame.column.half_width
+        statics, half = super()._statics_at(rotation), self.frame.column.half_width
         pull, cosine = self.total_tendon_force(rotation), math.cos(0.5 * rotation)
         side = math.copysign(1.0, rotation) if rotation else 0.0
         shares = (0.5 * (1.0 - side), 0.5 * (1.0 + side))
         return replace(
-            found,
+            statics,
             # moment of the forces at the feet about the middle of each foot
-            base_moment=found.base_moment + side * pull * half * cosine,
-            restoring_moment=found.restoring_moment + side * 2.0 * half * pull * cosine,
+            base_moment=statics.base_moment + side * pull * half * cosine,
+            restoring_moment=statics.restoring_moment + side * 2.0 * half * pull * cosine,
             reactions={
                 name: force + share * pull * cosine
-                for (name, force), share in zip(found.reactions.items(), shares, strict=True)
+                for (name, force), share in zip(statics.reactions.items(), shares, strict=True)
             },
         )
 
     def equilibrium(self) -> dict[str, Any]:
         """Return reactions, moment at uplift, and the tendons at rest."""
-        pull, found = self.total_tendon_force(0.0), super().equilibrium()
-        found["uplift_moment"] += pull * self.frame.column.half_width
+        pull, values = self.total_tendon_force(0.0), super().equilibrium()
+        values["uplift_moment"] += pull * self.frame.column.half_width
         for name in ("static_left_reaction", "static_right_reaction"):
-            found[name] += 0.5 * pull
-        return found | {
+            values[name] += 0.5 * pull
+        return values | {
             "restrainer": list(self.link_names),
             "static_restrainer_force": self.tendon_forces(0.0),
             "static_restrainer_elongation": [0.0] * len(self.tendons),
@@ -230,8 +230,8 @@ class TendonFrameSetting(RockingFrameSetting):
             ],
             numbers=[
                 *inherited.numbers,
-                *((name, f"along the axis of each column, {', '.join(tie_law_words(one))}")
-                  for name, one in zip(self.link_names, self.tendons, strict=True)),
+                *((name, f"along the axis of each column, {', '.join(tie_law_words(tendon))}")
+                  for name, tendon in zip(self.link_names, self.tendons, strict=True)),
             ],
         )  # fmt: skip
 
@@ -254,5 +254,5 @@ def rocking_frame_setting(parts: Parts, options: Options) -> RockingFrameSetting
     refuse_options("a RockingFrame with tendons", options, small=False)
     if faults := duplicate_name_faults(parts.links):
         raise AssemblyError(faults)
-    tendons = tuple(one for one in parts.links if isinstance(one, Tendon))
+    tendons = tuple(link for link in parts.links if isinstance(link, Tendon))
     return TendonFrameSetting(load, restitution, frame, tendons)

@@ -86,7 +86,7 @@ def sliding_words(held: Words, *frictions: tuple[str, str], restraint: str | Non
         equations=[*held.equations, SLIP_EQUATION],
         restraint=held.restraint if restraint is None else restraint,
         numbers=[*held.numbers, *frictions],
-        left_out=[one for one in held.left_out if one != "sliding"],
+        left_out=[topic for topic in held.left_out if topic != "sliding"],
     )
 
 
@@ -250,7 +250,7 @@ class Setting(ABC):
     def cautions(self) -> list[str]:
         """Return warnings about values near or beyond the model's validity."""
         return [
-            *(text for each in self.supports for text in each.cautions()),
+            *(text for support in self.supports for text in support.cautions()),
             *self._lean_cautions(),
         ]
 

@@ -53,10 +53,10 @@ class SingleBodySetting(Setting):
         """Rotation of the body at rest under its weight; :eq:`eq-incline-lean` if small [rad]."""
         if not self.leans:
             return 0.0
-        found = self.support.standing.rest
-        if found is None:
+        poses = self.support.standing.rest
+        if poses is None:
             raise AssemblyError([self._no_equilibrium_words()])
-        return found[0].state.rotation
+        return poses[0].state.rotation
 
     def _no_equilibrium_words(self) -> str:
         """Say that the body has no equilibrium under its weight, and why."""
@@ -90,10 +90,10 @@ class SingleBodySetting(Setting):
 
     def equilibrium(self) -> dict[str, float]:
         """Return settlement, reactions at rest and moment at uplift, by names in the schema."""
-        found = self.upright()
+        values = self.upright()
         if self.rest_rotation != 0.0:
-            found |= static_values(self.statics(self.rest_rotation).reactions)
-        return found
+            values |= static_values(self.statics(self.rest_rotation).reactions)
+        return values
 
 
 @dataclass(frozen=True)
@@ -123,8 +123,8 @@ class SlidingBodySetting(SingleBodySetting):
         if self.leans and self.support.standing.rest is not None:
             state = self.support.standing.rest[0].state
             rest = [AtRest(state.rotation, state.vertical)]
-        one = ChainBody(body, self.support.base_numbers, 1.0, 0.0, 0.0)
-        return chain_model([one], self.body.mass, rest, frictions=[self.friction])
+        chain_body = ChainBody(body, self.support.base_numbers, 1.0, 0.0, 0.0)
+        return chain_model([chain_body], self.body.mass, rest, frictions=[self.friction])
 
     def slips_of(self, ending: Ending) -> tuple[SlipRange, ...]:
         """Return how far the body slipped."""

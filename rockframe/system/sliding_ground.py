@@ -41,7 +41,7 @@ class SlidingSetting(RigidGroundSetting):
     @property
     def onset_accelerations(self) -> tuple[float, float]:
         """Ground accelerations at which it rocks or slides; 0 if its weight moves it [m s^-2]."""
-        left, right = (min(self.friction.static, one) for one in self.corner_tangents)
+        left, right = (min(self.friction.static, tangent) for tangent in self.corner_tangents)
         left, right = self._accelerations_at_slopes(left, right)
         return max(left, 0.0), max(right, 0.0)
 

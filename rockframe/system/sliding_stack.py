@@ -148,10 +148,10 @@ def _refuse_many_modes(bases: Sequence[Component], slips: bool) -> None:
 def sheared_tendon_faults(setting: StackSetting) -> list[str]:
     """Return faults for tendons without depth below a joint: a slip would shear them there."""
     return [
-        f"{one.name}: a Tendon without a depth is bent over the edge of its duct at the base, and "
+        f"{link.name}: a Tendon without a depth is bent over the edge of its duct at the base, and "
         "a block that slides shears it there: give the depth below the base at which it is fixed"
-        for one in setting.links
-        if isinstance(one.part, Tendon) and one.part.si.depth == 0.0
+        for link in setting.links
+        if isinstance(link.part, Tendon) and link.part.si.depth == 0.0
     ]
 
 
@@ -212,7 +212,7 @@ class SlidingRestrainedSetting(RestrainedSetting):
                 ("flight", "nothing bears: N = 0"),
                 ("impact", f"{self.impact}: {impact_words(self.impact)}; restrainers, whose forces "
                  "are finite, have no part in it"),
-                *(one for one in text.equations if one[0] == "restrainers"),
+                *(equation for equation in text.equations if equation[0] == "restrainers"),
             ],
         )  # fmt: skip
 

@@ -54,48 +54,48 @@ class StackSetting(StackedBodies):
 
     def rest_slip_cautions(self, *names: str) -> list[str]:
         """Warn of bodies on rigid bases, with these names, that slide at rest under their links."""
-        found = list[str]()
+        cautions = list[str]()
         for k, (name, friction) in enumerate(zip(names, self.frictions, strict=True)):
             if self.rigid[k] and math.isfinite(friction.static):
                 load = rigid_base_load(self, k, self._link_states_at_rest)
                 if abs(load.shear) > friction.static * load.normal:
-                    found.append(
+                    cautions.append(
                         f"{name} slides under its restrainers and loads: at rest it needs a "
                         f"friction of {abs(load.shear) / load.normal:.4g}, and has "
                         f"{friction.static:.4g}"
                     )
-        return found
+        return cautions
 
     @property
     def link_names(self) -> tuple[str, ...]:
         """Names of the links in results, without loads."""
-        return tuple(one.name for one in self.links if not isinstance(one.part, Load))
+        return tuple(link.name for link in self.links if not isinstance(link.part, Load))
 
     def cautions(self) -> list[str]:
         """Return the warnings of all bases, each with the number of the body on it."""
-        found = [
+        cautions = [
             f"under body {k}: {text}" if len(self.bodies) > 1 else text
             for k, base in enumerate(self.bases, 1)
             for text in base.cautions()
         ]
-        return [*found, *self._lean_cautions()]
+        return [*cautions, *self._lean_cautions()]
 
     def friction_to_rock(self) -> dict[str, float]:
         """Return the friction to rock of all bodies above each base, as one.
 
         Links stretch before an end lifts from a deformable base; for these bases it is not given.
         """
-        found = dict[str, float]()
+        frictions = dict[str, float]()
         bodies = self.body, *self.joined_bodies
         for k, (rigid, body) in enumerate(zip(self.rigid, bodies, strict=True)):
             name = (
                 FRICTION_TO_ROCK if len(self.bodies) == 1 else f"base {k + 1}: {FRICTION_TO_ROCK}"
             )
             if not self.links:
-                found[f"{name} b/h"] = min(body.left, body.right) / body.centre_height
+                frictions[f"{name} b/h"] = min(body.left, body.right) / body.centre_height
             elif rigid:
-                found[name] = uplift_limits(self, k, self._link_states_at_rest).friction
-        return found
+                frictions[name] = uplift_limits(self, k, self._link_states_at_rest).friction
+        return frictions
 
     def words(self) -> Words:
         """Describe bodies and bases, from the top down."""
@@ -135,8 +135,8 @@ class StackSetting(StackedBodies):
 
     @cached_property
     def _rest(self) -> list[Pose]:
-        found = self.standing.rest if self.groups else []
-        if found is None:
+        poses = self.standing.rest if self.groups else []
+        if poses is None:
             raise AssemblyError([NO_EQUILIBRIUM + (PULLED_OVER if self.links else "")])
         faults = list[str]()
         for k, rigid in enumerate(self.rigid):
@@ -150,7 +150,7 @@ class StackSetting(StackedBodies):
                 )
         if faults:
             raise AssemblyError(faults)
-        return found
+        return poses
 
     def _rest_positions(self) -> "list[AtRest]":
         """Return the position of each body at rest on its base; full contact on rigid bases."""
@@ -169,17 +169,17 @@ class StackSetting(StackedBodies):
     @cached_property
     def rest_rotation(self) -> float:
         """Rotation of the highest body at rest [rad]."""
-        return math.fsum(one.state.rotation for one in self._rest) if self.leans else 0.0
+        return math.fsum(pose.state.rotation for pose in self._rest) if self.leans else 0.0
 
     @cached_property
     def uplift_angle(self) -> float:
         """Uplift angle of the highest body; NaN if links act on it and bodies are below [rad]."""
-        if self.rigid[0] or all(0 not in (one.on, one.to) for one in self.links):
+        if self.rigid[0] or all(0 not in (link.on, link.to) for link in self.links):
             return self.bases[0].uplift_angle
         if len(self.bodies) > 1:
             return math.nan
         angles = (abs(self.standing.chain.uplift_rotation(side)) for side in (1.0, -1.0))
-        return min((one for one in angles if not math.isnan(one)), default=math.nan)
+        return min((angle for angle in angles if not math.isnan(angle)), default=math.nan)
 
     def small_motion(self) -> SmallMotion | None:
         """Return the equations of small motion about rest, of each body relative to its base."""
@@ -215,34 +215,34 @@ class StackSetting(StackedBodies):
         """
         if not self.groups:
             return [rocking_statics(self, rotation) for rotation in rotations]
-        found = self.standing.held(rotations)
+        states = self.standing.held(rotations)
         if len(self.bodies) == 1:
-            return found
+            return states
         if any(self.rigid):
-            found = statics_beyond_uplift(self, rotations, found)
-        return [None if one is None else replace(one, reactions={}) for one in found]
+            states = statics_beyond_uplift(self, rotations, states)
+        return [None if state is None else replace(state, reactions={}) for state in states]
 
     def equilibrium(self) -> dict[str, Any]:
         """Return the values of links and, of a single body, of its base at rest, by names."""
-        found = dict[str, Any]()
+        values = dict[str, Any]()
         if len(self.bodies) == 1 and not self.groups:
             load = rigid_base_load(self, 0, self._link_states_at_rest)
             left, right = self.body.left, self.body.right
             reactions = (load.right_limit / (left + right), load.left_limit / (left + right))
-            found = {
+            values = {
                 "uplift_moment": load.normal * self.body.half_width,
                 **static_values(dict(zip(REACTIONS, reactions, strict=True))),
             }
         elif len(self.bodies) == 1:
             base, shown = self.bases[0], self.standing.reactions(self._rest)
-            found = {base.settlement_name: base.settlement, **static_values(shown)}
+            values = {base.settlement_name: base.settlement, **static_values(shown)}
         if not self.link_names:
-            return found
+            return values
         tied = self._link_states_at_rest[: len(self.link_names)]
-        return found | {
+        return values | {
             "restrainer": list(self.link_names),
-            "static_restrainer_force": [self.body.mass * one.force for one in tied],
-            "static_restrainer_elongation": [one.elongation for one in tied],
+            "static_restrainer_force": [self.body.mass * tie.force for tie in tied],
+            "static_restrainer_elongation": [tie.elongation for tie in tied],
         }
 
     @cached_property
@@ -257,7 +257,7 @@ class StackSetting(StackedBodies):
         from rockframe.dynamics.chain.model import chain_model
 
         rest = self._rest_positions()
-        limits = [whole.overturning_angles for whole in self.joined_bodies]
+        limits = [joined.overturning_angles for joined in self.joined_bodies]
         one_linked_body = bool(self.links) and len(self.bodies) == 1 and bool(self.groups)
         return chain_model(
             self.chain_bodies, self.body.mass, rest if self.leans else None, limits,
@@ -292,13 +292,15 @@ def stack_setting(
     links: Sequence[Link],
 ) -> StackSetting:
     """Return the setting of stacked blocks, listed from the top down, on bases and with links."""
-    found = [block_body(one) for one in blocks]
+    stacked = [block_body(block) for block in blocks]
     for link in links:  # masses of loads are added to their bodies
         k = link.si.on_body - 1
-        if isinstance(link, Load) and link.si.moving_mass and k < len(found):
-            found[k] = with_point_mass(found[k], link.si.moving_mass, *link.si.at)
-    bodies = tuple(found)
-    tops = tuple(one.height - body.centre_height for one, body in zip(blocks, found, strict=True))
+        if isinstance(link, Load) and link.si.moving_mass and k < len(stacked):
+            stacked[k] = with_point_mass(stacked[k], link.si.moving_mass, *link.si.at)
+    bodies = tuple(stacked)
+    tops = tuple(
+        block.height - body.centre_height for block, body in zip(blocks, stacked, strict=True)
+    )
     load = BaseLoad(bodies[0], options)
     loads = [load] if len(bodies) == 1 else [
         BaseLoad(combined_body(bodies[: k + 1], tops, offsets), options)

@@ -64,17 +64,17 @@ class StackedBodies(Setting):
     @cached_property
     def groups(self) -> tuple[range, ...]:
         """Ranges of bodies that rigid bases join at rest, one above each deformable base."""
-        found, first = list[range](), 0
+        groups, first = list[range](), 0
         for k, rigid in enumerate(self.rigid):
             if not rigid:
-                found.append(range(first, k + 1))
+                groups.append(range(first, k + 1))
                 first = k + 1
-        return tuple(found)
+        return tuple(groups)
 
     @cached_property
     def chain_bodies(self) -> tuple[ChainBody, ...]:
         """The bodies as the equations take them, per unit mass of the highest one."""
-        found, carried, mass = list[ChainBody](), 0.0, self.body.mass
+        chain_bodies, carried, mass = list[ChainBody](), 0.0, self.body.mass
         below = (*(body.eccentricity for body in self.bodies[1:]), 0.0)
         for body, top, offset, base, lower in zip(
             self.bodies, self.tops, self.offsets, self.bases, below, strict=True
@@ -83,13 +83,13 @@ class StackedBodies(Setting):
             beside = offset + body.eccentricity - lower
             law = BaseLoad(body, self.options).law(mass)
             numbers = base.law(law, mass, carried)
-            found.append(ChainBody(law, numbers, body.mass / mass, top, beside))
-        return tuple(found)
+            chain_bodies.append(ChainBody(law, numbers, body.mass / mass, top, beside))
+        return tuple(chain_bodies)
 
     @cached_property
     def chain_links(self) -> tuple[ChainLink, ...]:
         """The links as the equations take them."""
-        return tuple(one.chain_link(self.body.mass) for one in self.links)
+        return tuple(link.chain_link(self.body.mass) for link in self.links)
 
     @cached_property
     def standing(self) -> StandingBodies:
@@ -103,7 +103,7 @@ class StackedBodies(Setting):
 
         `lifted` is the lowest body of that group, -1 for none; `side` is the side of its corner.
         """
-        found, numbers = list[StandingBody](), list[BaseNumbers]()
+        standing_groups, numbers = list[StandingBody](), list[BaseNumbers]()
         mass = self.body.mass
         for group in groups:
             body, lowest = self._combined_group(group), group[-1]
@@ -115,31 +115,37 @@ class StackedBodies(Setting):
                     beside += shift - self._combined_group(below).eccentricity
             height = math.fsum(self.bodies[k].centre_height + self.tops[k] for k in group)
             law = BaseLoad(body, self.options).law(mass)
-            carried = math.fsum(one.mass for one in self.bodies[: lowest + 1])
+            carried = math.fsum(member.mass for member in self.bodies[: lowest + 1])
             numbers.append(self.bases[lowest].law(law, mass, carried))
             part = BodyOnBase(law, numbers[-1].law)
             link = standing_body(part, body.mass / mass, height - body.centre_height, beside)
             if lowest == lifted:
-                small = min(one.settlement for one in self.standing.chain.bodies)
+                small = min(member.settlement for member in self.standing.chain.bodies)
                 link = link._replace(corner=side, settlement=small)
-            found.append(link)
-        links = tuple(self._link_between_groups(one, groups) for one in self.links)
-        chain = StandingChain(tuple(found), self.slope.along_gravity, links)
+            standing_groups.append(link)
+        links = tuple(self._link_between_groups(link, groups) for link in self.links)
+        chain = StandingChain(tuple(standing_groups), self.slope.along_gravity, links)
         return StandingBodies(chain, mass, tuple(numbers))
 
     def _link_between_groups(self, link: PlacedLink, groups: Sequence[range]) -> ChainLink:
         """Return a link between groups of joined bodies; a point on the ground stays there."""
-        found = link.chain_link(self.body.mass)
+        chain_link = link.chain_link(self.body.mass)
         if not any(self.rigid):
-            return found
+            return chain_link
         which, points = [-1, -1], [(0.0, 0.0), (0.0, 0.0)]
         for i, (body, (x, y)) in enumerate(zip((link.on, link.to), link.ends, strict=True)):
             for number, group in enumerate(groups):
                 if body in group:
-                    one, (place, level) = self._combined_group(group), self.base_of(group[-1])
+                    group_body, (place, level) = (
+                        self._combined_group(group),
+                        self.base_of(group[-1]),
+                    )
                     which[i] = number
-                    points[i] = (x - place - one.eccentricity, y - level - one.centre_height)
-        return found._replace(on=which[0], on_point=points[0], to=which[1], to_point=points[1])
+                    points[i] = (
+                        x - place - group_body.eccentricity,
+                        y - level - group_body.centre_height,
+                    )
+        return chain_link._replace(on=which[0], on_point=points[0], to=which[1], to_point=points[1])
 
     def base_of(self, k: int) -> tuple[float, float]:
         """Return the middle of the base of upright body `k`, from that of the lowest one [m]."""

@@ -44,14 +44,14 @@ class Statics:
     reactions: dict[str, float] = field(default_factory=dict[str, float])
 
 
-def static_values(shown: Mapping[str, float]) -> dict[str, float]:
+def static_values(values: Mapping[str, float]) -> dict[str, float]:
     """Return values of bases at rest by their names in the schema, which begin with `static_`."""
-    return {f"static_{name}": value for name, value in shown.items()}
+    return {f"static_{name}": value for name, value in values.items()}
 
 
 def required_states(rotations: Sequence[float], states: Sequence[Statics | None]) -> list[Statics]:
     """Return the states at rotations; SolverError if there is none at one of them."""
-    found = list[Statics]()
+    existing = list[Statics]()
     for rotation, state in zip(rotations, states, strict=True):
         if state is None:
             msg = (
@@ -59,8 +59,8 @@ def required_states(rotations: Sequence[float], states: Sequence[Statics | None]
                 f"{rotation:.6g} rad: what it stands on cannot carry the moment"
             )
             raise SolverError(msg)
-        found.append(state)
-    return found
+        existing.append(state)
+    return existing
 
 
 @dataclass(frozen=True)
@@ -98,16 +98,16 @@ class StandingBodies:
     def held(self, rotations: Sequence[float]) -> list[Statics | None]:
         """Return states with the highest body held at rotations [rad]; None where none exists."""
         curve = self.chain.curve(rotations)
-        found = [None if poses is None else self.statics_of(poses) for poses in curve]
+        states = [None if poses is None else self.statics_of(poses) for poses in curve]
         least = (
             LINEAR_ROTATION * self.chain.bodies[0].allowed_rotation
             if self.chain.rests_upright
             else 0.0
         )
-        for i, (rotation, state) in enumerate(zip(rotations, found, strict=True)):
+        for i, (rotation, state) in enumerate(zip(rotations, states, strict=True)):
             if state is not None and abs(rotation) < least:
-                found[i] = self._near_upright(rotation, state)
-        return found
+                states[i] = self._near_upright(rotation, state)
+        return states
 
     def _near_upright(self, rotation: float, state: Statics) -> Statics:
         """Return a state with moments free of cancellation, by their slope, to fourth order."""
@@ -138,17 +138,17 @@ class StandingBodies:
 
     def reactions(self, poses: list[Pose]) -> dict[str, float]:
         """Return the columns of the bases in an equilibrium, by the names of the schema."""
-        found = dict[str, float]()
+        values = dict[str, float]()
         for standing, pose, numbers in zip(self.chain.bodies, poses, self.bases, strict=True):
             if standing.corner:
                 continue
             base = standing.part.base
-            shown = base.observed(pose.mode.contact, pose.line, pose.own)
-            for column, value in zip(numbers.columns, shown, strict=True):
-                found[column.name] = (self.mass if column.per_mass else 1.0) * value
+            observed = base.observed(pose.mode.contact, pose.line, pose.own)
+            for column, value in zip(numbers.columns, observed, strict=True):
+                values[column.name] = (self.mass if column.per_mass else 1.0) * value
         if len(poses) > 1:
-            found["cap_rotation"] = poses[-1].state.rotation
-        return found
+            values["cap_rotation"] = poses[-1].state.rotation
+        return values
 
     def small_motion(self, poses: list[Pose]) -> tuple[Array, Array, Array]:
         """Return mass, damping and stiffness matrix about rest, for rotation and height of each."""
@@ -160,7 +160,7 @@ class StandingBodies:
     def motion_of_single_body(self, poses: list[Pose]) -> SmallMotion:
         """Return the equations of small motion about rest of a body alone on its base."""
         # height before rotation
-        matrices = (one[::-1, ::-1] for one in self.small_motion(poses))
+        matrices = (matrix[::-1, ::-1] for matrix in self.small_motion(poses))
         return SmallMotion(("vertical_displacement", "rotation"), *matrices)
 
 

@@ -124,8 +124,8 @@ class Support(ABC):
 
     def at_rest(self) -> dict[str, float]:
         """Return settlement and reactions of the upright body at rest, by their schema names."""
-        shown = self.standing.reactions([self.upright])
-        return {self.settlement_name: self.settlement, **static_values(shown)}
+        reactions = self.standing.reactions([self.upright])
+        return {self.settlement_name: self.settlement, **static_values(reactions)}
 
     @abstractmethod
     def words(self) -> BaseWords:
@@ -195,7 +195,9 @@ class Support(ABC):
         damping ratios of the base. The second is a mode, in which an eccentric body also rises.
         """
         rate = self.vertical_frequency
-        found = [(vertical, "omega_v", rate, 0.5 * self._slopes("vertical_velocity")[1] / rate)]
+        vibrations = [
+            (vertical, "omega_v", rate, 0.5 * self._slopes("vertical_velocity")[1] / rate)
+        ]
         square, rise = self._rocking_mode()
         if square > 0.0:
             rate = sqrt(square)
@@ -204,11 +206,11 @@ class Support(ABC):
             )
             damping = turning[0] + rise * (turning[1] + rising[0] + rise * rising[1])
             inertia = self.load.body.base_inertia / self.load.body.mass + rise * rise
-            found.append((rocking, "omega_r", rate, 0.5 * damping / (inertia * rate)))
+            vibrations.append((rocking, "omega_r", rate, 0.5 * damping / (inertia * rate)))
         return [
             (title, f"{symbol} = {rate:.6g} rad/s (period {2.0 * math.pi / rate:.6g} s), damping "
              f"ratio {ratio:.6g}")
-            for title, symbol, rate, ratio in found
+            for title, symbol, rate, ratio in vibrations
         ]  # fmt: skip
 
     def _rocking_mode(self) -> tuple[float, float]:
@@ -254,13 +256,13 @@ class PadSupport(Support):
 
     def cautions(self) -> list[str]:
         """Return warnings about restitution and stability."""
-        found = restitution_cautions(self.restitution, self.load.body.maximum_restitution)
+        cautions = restitution_cautions(self.restitution, self.load.body.maximum_restitution)
         if self.rocking_stiffness <= 0.0:
-            found.append(
+            cautions.append(
                 "the pads are too soft to hold the block upright: 2 k b^2 is below m g h, so "
                 "that the smallest disturbance overturns it"
             )
-        return found
+        return cautions
 
     def law(self, body: Body, mass: float, load_mass: float) -> BaseNumbers:
         """Return the pads as the equations take them."""
@@ -314,7 +316,7 @@ def pads_under(pads: TwoSpringSupport, load: BaseLoad) -> PadSupport:
     if damping is None:
         damping = numbers.damping_ratio * body.mass * vertical
     # the restitution of a body too squat to rock from corner to corner is zero
-    greatest = Restitutions(*(max(one, 0.0) for one in body.maximum_restitution))
+    greatest = Restitutions(*(max(restitution, 0.0) for restitution in body.maximum_restitution))
     return PadSupport(load, stiffness, damping, base_restitution(pads, greatest))
 
 

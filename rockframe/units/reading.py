@@ -77,8 +77,8 @@ def to_si_values(value: object, measure: Measure, *, owner: str, name: str) -> l
     """Convert an argument of one or several values to floats in SI units."""
     if isinstance(value, pint.Quantity):
         argument: Any = value
-        each = argument if getattr(argument.magnitude, "ndim", 0) == 1 else [argument]
-        return [to_si(one, measure, owner=owner, name=name) for one in each]
+        quantities = argument if getattr(argument.magnitude, "ndim", 0) == 1 else [argument]
+        return [to_si(quantity, measure, owner=owner, name=name) for quantity in quantities]
     if isinstance(value, str) or getattr(value, "ndim", 1) == 0:
         return [to_si(value, measure, owner=owner, name=name)]
     if isinstance(value, Iterable):
@@ -109,9 +109,9 @@ def attached_unit(values: object) -> str | None:
     held: Any = values
     attributes = getattr(held, "attrs", None)
     # arrays of numpy have data too, which those of dates do not give
-    for one in (held, None if attributes is None else getattr(held, "data", None)):
-        if isinstance(one, pint.Quantity):
-            return f"{one.units:~}"
+    for quantity in (held, None if attributes is None else getattr(held, "data", None)):
+        if isinstance(quantity, pint.Quantity):
+            return f"{quantity.units:~}"
     unit = (attributes or {}).get("units")
     return unit if isinstance(unit, str) else None
 
@@ -335,8 +335,8 @@ def _root_units(value: Any) -> dict[str, float]:
     # For pint the radian is dimensionless, so that a ratio would pass for an angle and rad/s for
     # Hz (a factor of 2 pi); the root units differ. They are those of one unit, as a huge value
     # would overflow.
-    one: Any = type(value)(1, value.units)
-    return {unit: float(power) for unit, power in one.to_root_units().unit_items()}
+    unit_value: Any = type(value)(1, value.units)
+    return {unit: float(power) for unit, power in unit_value.to_root_units().unit_items()}
 
 
 def _check_value(

@@ -75,11 +75,15 @@ def pint_spelling(text: str) -> str | None:
 
 def invalid_character(text: str) -> str | None:
     """Return the first character that occurs in no number and no unit; None if there is none."""
-    found = _INVALID_CHARACTER.search(text.translate(_SPELLINGS))
-    if found is not None:
-        return found[0]
+    match = _INVALID_CHARACTER.search(text.translate(_SPELLINGS))
+    if match is not None:
+        return match[0]
     # for example a fraction or a subscript: numeric characters that occur in no number
-    others = (one for one in text if not one.isdecimal() and one not in SUPERSCRIPT_POWERS)
+    others = (
+        character
+        for character in text
+        if not character.isdecimal() and character not in SUPERSCRIPT_POWERS
+    )
     return next(filter(str.isnumeric, others), None)
 
 
@@ -130,7 +134,7 @@ AMBIGUOUS: Final = (
 def foreign_quantity_hint(value: object) -> str:
     """Say how to convert a quantity of another library; nothing for other values."""
     home = type(value).__module__.partition(".")[0]
-    unit = next((one for one in ("unit", "units") if hasattr(value, one)), None)
+    unit = next((attribute for attribute in ("unit", "units") if hasattr(value, attribute)), None)
     if unit is None or not hasattr(value, "value"):
         return ""
     return (

@@ -76,8 +76,8 @@ def find_reversal(points: Array) -> int | None:
     before, after = points - np.roll(points, 1, axis=0), np.roll(points, -1, axis=0) - points
     cross = before[:, 0] * after[:, 1] - before[:, 1] * after[:, 0]
     along = (before * after).sum(axis=1)
-    found = np.flatnonzero((along < 0.0) & (np.abs(cross) <= -_THIN * along))
-    return int(found[0]) if len(found) else None
+    reversals = np.flatnonzero((along < 0.0) & (np.abs(cross) <= -_THIN * along))
+    return int(reversals[0]) if len(reversals) else None
 
 
 def find_crossing(points: Array) -> tuple[int, int] | None:
@@ -86,22 +86,22 @@ def find_crossing(points: Array) -> tuple[int, int] | None:
     left, low = np.minimum(starts, ends).T.copy()
     right, high = np.maximum(starts, ends).T.copy()
     count = len(points)
-    for one in range(count - 2):
+    for edge in range(count - 2):
         # the last edge is a neighbour of the first
-        others = slice(one + 2, count - 1 if one == 0 else count)
-        near = (left[others] <= right[one]) & (right[others] >= left[one])
-        near &= (low[others] <= high[one]) & (high[others] >= low[one])
-        nearby = one + 2 + np.flatnonzero(near)
+        others = slice(edge + 2, count - 1 if edge == 0 else count)
+        near = (left[others] <= right[edge]) & (right[others] >= left[edge])
+        near &= (low[others] <= high[edge]) & (high[others] >= low[edge])
+        nearby = edge + 2 + np.flatnonzero(near)
         if not len(nearby):
             continue
-        start, end = starts[one], ends[one]
+        start, end = starts[edge], ends[edge]
         apart = _side(start, end, starts[nearby]) * _side(start, end, ends[nearby])
         other_way = _side(starts[nearby], ends[nearby], start) * _side(
             starts[nearby], ends[nearby], end
         )
-        found = nearby[(apart <= 0.0) & (other_way <= 0.0)]
-        if len(found):
-            return one, int(found[0])
+        crossed = nearby[(apart <= 0.0) & (other_way <= 0.0)]
+        if len(crossed):
+            return edge, int(crossed[0])
     return None
 
 
@@ -129,10 +129,12 @@ def outline_mass(
     """Read an outline, check that it is a simple polygon, and give its mass and corners."""
     read = read_points(points, owner=owner, name=name)
     # points that repeat the one before are left out; the first follows the last
-    kept = [k for k in range(len(read)) if (read[k] != read[k - 1]).any()]
-    corners = [OutlineCorner(f"{name}[{k}]", float(read[k, 0]), float(read[k, 1])) for k in kept]
-    _check_simple(read[kept], corners, owner)
-    area, x, y, mean_square = polygon_properties(read[kept])
+    distinct = [k for k in range(len(read)) if (read[k] != read[k - 1]).any()]
+    corners = [
+        OutlineCorner(f"{name}[{k}]", float(read[k, 0]), float(read[k, 1])) for k in distinct
+    ]
+    _check_simple(read[distinct], corners, owner)
+    area, x, y, mean_square = polygon_properties(read[distinct])
     mass = read_mass(values, area, owner=owner)
     return PlaneMass(mass, x, y, mass * mean_square), corners
 
@@ -249,16 +251,16 @@ def from_outline(
     (1920.0, -0.0833)
     """
     owner = f"{cls.__name__}.from_outline"
-    given = points if unit is None else (points, unit)
+    written = points if unit is None else (points, unit)
     values = {"mass": mass, "density": density, "depth": depth}
-    whole, corners = outline_mass(given, values, owner, "points")
+    body_mass, corners = outline_mass(written, values, owner, "points")
     ground, top = (of(corner.y for corner in corners) for of in (min, max))
     slack = ROUNDING * extent(np.array([(corner.x, corner.y) for corner in corners]))
     lowest = [corner.x for corner in corners if corner.y <= ground + slack]
     if max(lowest) - min(lowest) <= slack:
         _raise_single_point_base(corners, owner)
     return shaped_body(
-        cls, whole, BaseSegment(min(lowest), max(lowest), ground), top, corners, owner
+        cls, body_mass, BaseSegment(min(lowest), max(lowest), ground), top, corners, owner
     )
 
 
@@ -333,5 +335,5 @@ def cylinder(
         area = math.pi * (outer - inner) * (outer + inner)
         total_mass = positive(density, "density", DENSITY) * (area * top)
     inertia = total_mass * (3.0 * (outer * outer + inner * inner) + top * top) / 12.0
-    whole = PlaneMass(total_mass, 0.0, 0.5 * top, inertia)
-    return shaped_body(cls, whole, BaseSegment(-outer, outer, 0.0), top, (), owner)
+    body_mass = PlaneMass(total_mass, 0.0, 0.5 * top, inertia)
+    return shaped_body(cls, body_mass, BaseSegment(-outer, outer, 0.0), top, (), owner)

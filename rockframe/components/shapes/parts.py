@@ -108,7 +108,9 @@ def _rectangle(
     mass = read_mass(values, width * height, owner=owner)
     (x, y), inertia = at, mass * (width * width + height * height) / 12.0
     words = f"a corner of part {name!r}"
-    corners = tuple(OutlineCorner(words, *one) for one in rectangle(0.5 * width, height, x, y))
+    corners = tuple(
+        OutlineCorner(words, *corner) for corner in rectangle(0.5 * width, height, x, y)
+    )
     return PlacedPart(name, PlaneMass(mass, x, y + 0.5 * height, inertia), corners, y + height)
 
 
@@ -121,8 +123,8 @@ def _outline(
         OutlineCorner(f"{corner.words} of part {name!r}", corner.x + x, corner.y + y)
         for corner in corners
     )
-    there = PlaneMass(mass.mass, mass.x + x, mass.y + y, mass.inertia)
-    return PlacedPart(name, there, moved, max(corner.y for corner in moved))
+    placed = PlaneMass(mass.mass, mass.x + x, mass.y + y, mass.inertia)
+    return PlacedPart(name, placed, moved, max(corner.y for corner in moved))
 
 
 def _body(name: str, values: Mapping[str, Any], at: tuple[float, float], owner: str) -> PlacedPart:
@@ -131,13 +133,13 @@ def _body(name: str, values: Mapping[str, Any], at: tuple[float, float], owner: 
         msg = f"{owner} needs a Block as its body, got {short_repr(values['body'])}"
         raise ComponentError(msg)
     x, y = at
-    there = PlaneMass(si.mass, x + si.eccentricity, y + si.centre_height, si.inertia)
+    placed = PlaneMass(si.mass, x + si.eccentricity, y + si.centre_height, si.inertia)
     words = f"an end of the base of part {name!r}"
     corners = (
         OutlineCorner(words, x - si.half_width, y),
         OutlineCorner(words, x + si.half_width, y),
     )
-    return PlacedPart(name, there, corners, y + si.height)
+    return PlacedPart(name, placed, corners, y + si.height)
 
 
 def _point(name: str, values: Mapping[str, Any], at: tuple[float, float], owner: str) -> PlacedPart:
@@ -177,11 +179,11 @@ def _standing(kind: type[ComponentType], value: object, base: object, owner: str
         stance = _common_base(parts, sorted(on_ground), slack, owner)
     else:
         stance = _given_base(base, on_ground, slack, owner)
-    whole = combined_mass([part.mass for part in parts])
-    if not whole.inertia > 0.0:
+    body_mass = combined_mass([part.mass for part in parts])
+    if not body_mass.inertia > 0.0:
         msg = f"{owner}: all mass is in one point, so that the body has no inertia"
         raise ComponentError(msg)
-    return shaped_body(kind, whole, stance, top, corners, owner)
+    return shaped_body(kind, body_mass, stance, top, corners, owner)
 
 
 def _read(value: object, owner: str) -> list[PlacedPart]:

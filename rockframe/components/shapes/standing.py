@@ -51,23 +51,23 @@ Mass = TypeVar("Mass", bound=PlaneMass)
 def mass_weighted_mean(masses: Sequence[Mass], value: Callable[[Mass], float]) -> float:
     """Return the mean of a value, weighted by mass."""
     # every fraction is at most 1, so that masses of any magnitude do not overflow
-    total = sum(one.mass for one in masses)
-    return math.fsum(value(one) * (one.mass / total) for one in masses)
+    total = sum(mass.mass for mass in masses)
+    return math.fsum(value(mass) * (mass.mass / total) for mass in masses)
 
 
 def centre_of_mass(masses: Sequence[PlaneMass]) -> tuple[float, float]:
     """Return the coordinates of the common centre of masses, :eq:`eq-parts-centre` [m]."""
-    return mass_weighted_mean(masses, lambda one: one.x), mass_weighted_mean(
-        masses, lambda one: one.y
+    return mass_weighted_mean(masses, lambda mass: mass.x), mass_weighted_mean(
+        masses, lambda mass: mass.y
     )
 
 
 def combined_mass(masses: Sequence[PlaneMass]) -> PlaneMass:
     """Combine masses to one, by the parallel-axis theorem, :eq:`eq-parts-inertia`."""
     x, y = centre_of_mass(masses)
-    total = sum(one.mass for one in masses)
+    total = sum(mass.mass for mass in masses)
     squares = mass_weighted_mean(
-        masses, lambda one: one.inertia / one.mass + math.hypot(one.x - x, one.y - y) ** 2
+        masses, lambda mass: mass.inertia / mass.mass + math.hypot(mass.x - x, mass.y - y) ** 2
     )
     return PlaneMass(total, x, y, total * squares)
 
@@ -87,27 +87,30 @@ def read_points(value: object, *, owner: str, name: str) -> Array:
         "or numbers of shape (n, 2) with their unit, (points, 'm')"
     )
     if isinstance(value, pint.Quantity):
-        whole: Any = value
-        factor = to_si(type(whole)(1, whole.units), LENGTH, owner=owner, name=name)
-        return _point_array(whole.magnitude, factor, message)
+        quantity: Any = value
+        factor = to_si(type(quantity)(1, quantity.units), LENGTH, owner=owner, name=name)
+        return _point_array(quantity.magnitude, factor, message)
     if isinstance(value, str | Mapping) or not is_iterable(value):
         msg = f"{message}; got {short_repr(value)}"
         raise ComponentError(msg)
-    each: list[Any] = list(value)
-    if len(each) == 2 and isinstance(each[1], str) and not isinstance(each[0], str):
-        check_attached_unit(each[0], each[1], owner=owner, name=name)
-        return _point_array(each[0], to_si(f"1 {each[1]}", LENGTH, owner=owner, name=name), message)
-    if isinstance(value, np.ndarray) or _is_bare(each):
+    points: list[Any] = list(value)
+    if len(points) == 2 and isinstance(points[1], str) and not isinstance(points[0], str):
+        check_attached_unit(points[0], points[1], owner=owner, name=name)
+        return _point_array(
+            points[0], to_si(f"1 {points[1]}", LENGTH, owner=owner, name=name), message
+        )
+    if isinstance(value, np.ndarray) or _is_bare(points):
         msg = f"{message}; got {short_repr(value)}, bare numbers"
         raise UnitsError(msg)
-    pairs = [read_point(one, owner=owner, name=f"{name}[{k}]") for k, one in enumerate(each)]
+    pairs = [read_point(point, owner=owner, name=f"{name}[{k}]") for k, point in enumerate(points)]
     return np.array(pairs, dtype=np.float64).reshape(-1, 2)
 
 
 def _is_bare(points: list[Any]) -> bool:
     """Whether points are pairs of numbers without a unit."""
     return bool(points) and all(
-        isinstance(point, list | tuple) and all(isinstance(one, Real) for one in point)
+        isinstance(point, list | tuple)
+        and all(isinstance(coordinate, Real) for coordinate in point)
         for point in points
     )
 
@@ -123,7 +126,10 @@ def read_point(value: object, *, owner: str, name: str) -> tuple[float, float]:
             f"{short_repr(value)}"
         )
         raise ComponentError(msg)
-    x, y = (to_si(one, LENGTH, owner=owner, name=f"{name}[{k}]") for k, one in enumerate(pair))
+    x, y = (
+        to_si(coordinate, LENGTH, owner=owner, name=f"{name}[{k}]")
+        for k, coordinate in enumerate(pair)
+    )
     return x, y
 
 
@@ -248,7 +254,9 @@ def _contact_warnings(
 ) -> Iterator[str]:
     for side, word in ((1.0, "right"), (-1.0, "left")):
         limit = base.overturning_angle(mass, side)
-        corner = min(corners, key=lambda one: base.touching_angle(one, side), default=None)
+        corner = min(
+            corners, key=lambda candidate: base.touching_angle(candidate, side), default=None
+        )
         angle = limit if corner is None else base.touching_angle(corner, side)
         if corner is not None and angle < limit:
             yield (

@@ -41,8 +41,8 @@ def cascade(
     ratio = first.mass / second.mass
     lower_part, upper_part = (cast("SingleBody", one.system).part for one in (first, second))
     system = Cascade(upper_part, lower_part, ratio, top, cap_centre, offset)
-    shown = len(BODY_COLUMNS)
-    under = tuple(replace(column, mass_ratio=ratio) for column in first.columns[shown:])
+    body_columns = len(BODY_COLUMNS)
+    under = tuple(replace(column, mass_ratio=ratio) for column in first.columns[body_columns:])
 
     def initial(start: Start) -> tuple[int, Vector, Vector]:
         lower, below, memory = first.initial(Start())
@@ -59,7 +59,7 @@ def cascade(
         rotation_weights=np.array([1.0, 0.0, 1.0, 0.0, 0.0, 0.0]),
         scales=_interleaved(second.scales, first.scales),
         guard_tolerance=np.concatenate([second.guard_tolerance, first.guard_tolerance]),
-        columns=(*COLUMNS, *second.columns[shown:], *under),
+        columns=(*COLUMNS, *second.columns[body_columns:], *under),
         selects=True,
         contacts=CONTACTS,
         memory=(*MEMORY, "held_place_of_first"),

@@ -60,8 +60,8 @@ class AnyBase(Base, LawNumbers):
         """Return the guards of an end, and their rates; on a bed all but the first are idle."""
         if self.which == ON_PADS:
             return self.pads().guards_of(contact, left, line, own)
-        found = self.bed().guards_of(contact, left, line, own)
-        return Guards((found.values[0], 1.0, 1.0), (found.changes[0], 0.0, 0.0))
+        guards = self.bed().guards_of(contact, left, line, own)
+        return Guards((guards.values[0], 1.0, 1.0), (guards.changes[0], 0.0, 0.0))
 
     @kernel
     def observed(self, contact: int, line: BaseLine, own: Variables) -> Variables:

@@ -144,8 +144,10 @@ INPUTS_BEFORE_STATE: Final = 4
 @kernel
 def workspace_length(count: int) -> int:
     """Return the length of the workspace behind the rows, for a number of bodies."""
-    each = BODY_STRIDE + MAX_CONSTRAINTS * CONSTRAINT_STRIDE + 4 * BODY_DOF + 2 * GUARDS + COLUMNS
-    return count * each + POWERS + (MAX_CONSTRAINTS * count) ** 2 + INPUTS_BEFORE_STATE
+    per_body = (
+        BODY_STRIDE + MAX_CONSTRAINTS * CONSTRAINT_STRIDE + 4 * BODY_DOF + 2 * GUARDS + COLUMNS
+    )
+    return count * per_body + POWERS + (MAX_CONSTRAINTS * count) ** 2 + INPUTS_BEFORE_STATE
 
 
 class ChainNumbers(NamedTuple):
@@ -214,8 +216,8 @@ class ChainArray(StateAccess, CalledBySteps, ChainNumbers):
     @inlined
     def constraint_matrix(self) -> Vector:
         """Return the matrix of the constraints: responses of each to the forces of the others."""
-        each = 2 * BODY_DOF + 2 * GUARDS + COLUMNS
-        first = self.constraints_end() + self.body_count * each + POWERS
+        per_body = 2 * BODY_DOF + 2 * GUARDS + COLUMNS
+        first = self.constraints_end() + self.body_count * per_body + POWERS
         return view_of(self.rows, first, (MAX_CONSTRAINTS * self.body_count) ** 2)
 
     @inlined
@@ -257,9 +259,9 @@ class ChainArray(StateAccess, CalledBySteps, ChainNumbers):
         work, i, high = self.workspace(), k * BODY_STRIDE, mode >> HALF_OF_BITS
         low = mode - (high << HALF_OF_BITS)
         if work[i + HIGH_BITS] != high or work[i + LOW_BITS] != low:
-            found = self.unpack_mode(mode, k)
-            work[i + CONTACT], work[i + PIVOT] = found.contact, found.pivot
-            work[i + SLIDING_BIT] = 1.0 if found.slides else 0.0
+            body_mode = self.unpack_mode(mode, k)
+            work[i + CONTACT], work[i + PIVOT] = body_mode.contact, body_mode.pivot
+            work[i + SLIDING_BIT] = 1.0 if body_mode.slides else 0.0
             work[i + HIGH_BITS], work[i + LOW_BITS] = high, low
         return Mode(int(work[i + CONTACT]), int(work[i + PIVOT]), work[i + SLIDING_BIT] != 0.0)
 

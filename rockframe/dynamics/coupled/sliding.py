@@ -76,11 +76,11 @@ def slip_accelerations(
     """
     cap_rate, block_rate = states.lower.angular_velocity, states.upper.angular_velocity
     motion = solve_motion(pair, geometry, forces, known)
-    found = end_contributions(geometry, motion, forces.normal, block, cap)
+    ends = end_contributions(geometry, motion, forces.normal, block, cap)
     # an end below its base's level rises with the base, which returns without a force
-    of_block = found.block + normal + block.lever_derivative * block_rate * block_rate
+    of_block = ends.block + normal + block.lever_derivative * block_rate * block_rate
     of_block += pair.upper.base.following_rate() * block.speed
-    of_cap = found.cap + cap.lever_derivative * cap_rate * cap_rate
+    of_cap = ends.cap + cap.lever_derivative * cap_rate * cap_rate
     of_cap += pair.lower.base.following_rate() * cap.speed
     unit = solve_motion(pair, geometry, NO_FORCES, KnownTerms(0.0, 1.0, 0.0, 0.0))
     by_block = end_contributions(geometry, unit, 0.0, block, cap)

@@ -96,12 +96,14 @@ class ArgumentReader:
         if number is None:  # the formula has a default, which is not recorded
             return
         unit = _SPELLED.get(measure.unit, str(measure.unit))
-        kept = f"{number!r} {measure.unit}"
-        self._store(name, number, kept, f"{words}{number:.6g} {unit}", f"{words}{number!r} {unit}")
+        written = f"{number!r} {measure.unit}"
+        self._store(
+            name, number, written, f"{words}{number:.6g} {unit}", f"{words}{number!r} {unit}"
+        )
 
-    def _store(self, name: str, number: Any, kept: Any, short: str, exact: str) -> None:
+    def _store(self, name: str, number: Any, written: Any, short: str, exact: str) -> None:
         self.numbers[name] = number
-        self.recipe[name] = kept
+        self.recipe[name] = written
         self.short.append(short)
         self.exact.append(exact)
 

@@ -286,7 +286,7 @@ def example(
     records = record_sources(folder)
     record = records.get(name) if isinstance(cast("object", name), str) else None
     if record is None:
-        known = ", ".join(repr(one) for one in records)
+        known = ", ".join(repr(key) for key in records)
         got = f"{short_repr(name)}{did_you_mean(name, records)}"
         msg = f"{kind.__name__}.example: name must be one of {known}, got {got}"
         raise ComponentError(msg)

@@ -205,18 +205,18 @@ def _extrapolations(source: PointSource, owner: str) -> list[str]:
             f"stress_drop, shear_wave_velocity or magnitude is implausible"
         )
         raise ComponentError(msg)
-    found: list[str] = []
+    warnings: list[str] = []
     if source.magnitude > LARGEST_MAGNITUDE:
-        found.append(
+        warnings.append(
             f"{owner}: magnitude = {source.magnitude:.6g} is beyond {LARGEST_MAGNITUDE:g}, up to "
             "which the saturation of the model near large faults is calibrated"
         )
     if source.distance > LARGEST_DISTANCE:
-        found.append(
+        warnings.append(
             f"{owner}: distance = {source.distance / 1e3:.6g} km is beyond "
             f"{LARGEST_DISTANCE / 1e3:g} km, where the table of path durations ends"
         )
-    return found
+    return warnings
 
 
 def _arguments(

@@ -258,7 +258,7 @@ def from_frame(
 
 def _column(frame: Any, label: object, owner: str, argument: str) -> Array:
     if label not in frame.columns:
-        listed = ", ".join(repr(one) for one in list(frame.columns)[:10])
+        listed = ", ".join(repr(column) for column in list(frame.columns)[:10])
         near = did_you_mean(label, map(str, frame.columns))
         msg = f"{owner}: {argument} {short_repr(label)} is none of the columns {listed}{near}"
         raise ComponentError(msg)
@@ -293,7 +293,7 @@ def _step(frame: Any, time: str | None, time_step: QuantityLike | None, owner: s
             msg = f"{owner}: the frame has no times; give time, or time_step='0.01 s'"
             raise ComponentError(msg)
         return requested
-    printed = [repr(one) for one in cast("list[float]", times.tolist())]
+    printed = [repr(value) for value in cast("list[float]", times.tolist())]
     step, misfit = uniform_step(times, printed)
     if misfit is not None:
         msg = (
@@ -381,7 +381,7 @@ def from_trace(
 
 def _listed(stream: Any, owner: str) -> list[Any]:
     traces: list[Any] = list(getattr(stream, "traces", ()))
-    if not traces or not all(hasattr(one, part) for one in traces for part in _NEEDED):
+    if not traces or not all(hasattr(trace, part) for trace in traces for part in _NEEDED):
         msg = (
             f"{owner}: trace needs an ObsPy Trace, or a Stream that holds one, got "
             f"{short_repr(stream)}"

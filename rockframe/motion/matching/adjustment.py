@@ -117,9 +117,12 @@ class OscillatorPeaks(NamedTuple):
     def select(self, chosen: NDArray[np.bool_], targets: Array) -> OscillatorPeaks:
         """Keep the greatest peaks of some oscillators, and those that exceed the target."""
         exceeding = np.abs(self.values) > targets[self.oscillators]
-        kept = chosen[self.oscillators] & (exceeding | (self.ranks < _PEAKS_ALWAYS_KEPT))
+        selected = chosen[self.oscillators] & (exceeding | (self.ranks < _PEAKS_ALWAYS_KEPT))
         return OscillatorPeaks(
-            self.oscillators[kept], self.values[kept], self.times[kept], self.ranks[kept]
+            self.oscillators[selected],
+            self.values[selected],
+            self.times[selected],
+            self.ranks[selected],
         )
 
 
@@ -142,7 +145,7 @@ class Oscillators:
 
         signal: Any = module
         start, rise = self._lines(samples)
-        found = np.zeros((len(self._intervals), start.size + 1))
+        histories = np.zeros((len(self._intervals), start.size + 1))
         for row, (interval, period) in enumerate(
             zip(self._intervals.tolist(), self.periods.tolist(), strict=True)
         ):
@@ -151,8 +154,8 @@ class Oscillators:
             driven = up * start + uq * rise
             driven[1:] += (uv * vp - vv * up) * start[:-1] + (uv * vq - vv * uq) * rise[:-1]
             history = signal.lfilter([1.0], [1.0, -(uu + vv), uu * vv - uv * vu], driven)
-            found[row, 1:] = (2.0 * math.pi / period) ** 2 * history
-        return found
+            histories[row, 1:] = (2.0 * math.pi / period) ** 2 * history
+        return histories
 
     def peaks(self, samples: Array, histories: Array) -> OscillatorPeaks:
         """Find the greatest peaks of all oscillators, also between the samples."""
@@ -173,18 +176,18 @@ class Oscillators:
         first = np.searchsorted(which, np.arange(len(histories)))
         rank = np.arange(which.size) - first[which]
         few = rank < _MAX_PEAKS
-        kept = order[few]
-        return OscillatorPeaks(which[kept], values[kept], times[kept], rank[few])
+        greatest = order[few]
+        return OscillatorPeaks(which[greatest], values[greatest], times[greatest], rank[few])
 
     def influences(self, peaks: OscillatorPeaks, count: int) -> Array:
         """Compute the contribution of each sample to each peak, :eq:`eq-sample-influence`."""
-        found = np.zeros((peaks.values.size, count))
+        influences = np.zeros((peaks.values.size, count))
         for place, period in enumerate(self.periods.tolist()):
             rows = np.flatnonzero(peaks.oscillators == place)
             if rows.size:
-                found[rows] = self._influences_of(period, peaks.times[rows], count)
-        found[:, [0, -1]] = 0.0
-        return found
+                influences[rows] = self._influences_of(period, peaks.times[rows], count)
+        influences[:, [0, -1]] = 0.0
+        return influences
 
     def _influences_of(self, period: float, times: Array, count: int) -> Array:
         step, damping = self.time_step, self.damping_ratio
@@ -193,8 +196,8 @@ class Oscillators:
         root = complex(-damping * frequency, damped)
         # complex amplitude of the oscillation under a ramp of unit slope; `line` is added below
         swing = 1j / (root**2 * damped)
-        whole = np.floor(times / step).astype(int)
-        decays = np.exp(root * step * np.arange(whole.max() + 1))
+        knots = np.floor(times / step).astype(int)
+        decays = np.exp(root * step * np.arange(knots.max() + 1))
         kink = swing * 4.0 * np.sinh(0.5 * root * step) ** 2 / step * frequency**2
 
         def under_a_ramp(since: Array) -> Array:
@@ -202,16 +205,16 @@ class Oscillators:
             line = 2.0 * damping / frequency - after
             return line + frequency**2 * np.real(swing * np.exp(root * after))
 
-        found = np.zeros((times.size, count))
-        for row, (knot, time) in enumerate(zip(whole.tolist(), times.tolist(), strict=True)):
+        influences = np.zeros((times.size, count))
+        for row, (knot, time) in enumerate(zip(knots.tolist(), times.tolist(), strict=True)):
             early = min(knot, count)  # samples whose hat functions end before the peak
             offset = np.exp(root * (time - knot * step))
-            found[row, :early] = np.real(kink * offset * decays[knot : knot - early : -1])
+            influences[row, :early] = np.real(kink * offset * decays[knot : knot - early : -1])
             ramps = under_a_ramp(time - (knot + np.arange(-1, 3)) * step)
             for place, hat in enumerate(np.diff(ramps, 2).tolist(), start=knot):
                 if place < count:
-                    found[row, place] = hat / step
-        return found
+                    influences[row, place] = hat / step
+        return influences
 
     def _lines(self, samples: Array) -> tuple[Array, Array]:
         """Return start and rise of the lines between the samples, and of zeros after the motion."""
@@ -276,19 +279,19 @@ class Adjustment(NamedTuple):
         weights = weights / np.sqrt((weights[self.greatest] ** 2).mean())
         weights[~self.greatest] = np.maximum(weights[~self.greatest], 1.0)
         constrained = self.greatest | (self.misfits < 0.0)
-        found = np.zeros(self.misfits.size)
+        amplitudes = np.zeros(self.misfits.size)
         for _ in range(_ITERATIONS):
             rows = weights[constrained, None] * self.effects[constrained]
             # one equation for each constrained peak, which are no more than wavelets
             square = rows @ rows.T
             square[np.diag_indices_from(square)] += regularisation
             driven = weights[constrained] * self.misfits[constrained]
-            found = rows.T @ linalg.solve(square, driven, assume_a="pos")
-            exceeding = self.effects @ found > self.misfits + _TOLERATED_EXCESS
+            amplitudes = rows.T @ linalg.solve(square, driven, assume_a="pos")
+            exceeding = self.effects @ amplitudes > self.misfits + _TOLERATED_EXCESS
             if not (exceeding & ~constrained).any():
                 break
             constrained = constrained | exceeding
-        return found
+        return amplitudes
 
 
 def make_adjustment(
@@ -301,14 +304,14 @@ def make_adjustment(
     wavelets = np.zeros((count, target_values.size))
     both = zip(peaks.times.tolist(), periods.tolist(), strict=True)
     for column, (time, period) in enumerate(both):
-        one = wavelet_at(
+        wavelet = wavelet_at(
             time,
             period,
             oscillators.damping_ratio,
             time_step=oscillators.time_step,
             count=count,
         )
-        wavelets[one.samples, column] = one.values
+        wavelets[wavelet.samples, column] = wavelet.values
     effects = scaled @ wavelets
     heights = 1.0 / np.abs(effects).max(axis=0)
     misfits = 1.0 - np.abs(peaks.values) / target_values

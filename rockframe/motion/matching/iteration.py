@@ -138,7 +138,7 @@ def match(signal: Signal, goal: MatchingGoal) -> MatchResult:
     for _ in range(_MAX_CHECKS):
         done = run.improve(np.ones(periods.size, dtype=bool), _STEPS_BETWEEN_CHECKS)
         current = _checked(goal, signal, run.samples, factor, run.steps)
-        best = min(best, current, key=lambda one: one.misfit)
+        best = min(best, current, key=lambda state: state.misfit)
         if best.misfit < _MIN_REDUCTION * before:
             stalled_checks, before = 0, best.misfit
         else:
@@ -237,31 +237,34 @@ GROWTH_PERIOD: Final = "period_of_spectral_growth"
 
 def matching_changes(before: Signal, after: Signal, goal: MatchingGoal) -> dict[str, float]:
     """Compare a motion before and after its matching."""
-    found: dict[str, float] = {}
+    changes: dict[str, float] = {}
     for when, signal in (("before", before), ("after", after)):
         velocity, displacement = ground_path(signal)
         for name, pieces in zip(PEAKS, (signal.pieces, velocity, displacement), strict=True):
-            found[f"{name}_{when}_matching"] = absolute_peak(pieces)
-        found[f"{INDICATOR}_{when}_matching"] = _indicator(knots_of(velocity), signal.time_step)
+            changes[f"{name}_{when}_matching"] = absolute_peak(pieces)
+        changes[f"{INDICATOR}_{when}_matching"] = _indicator(knots_of(velocity), signal.time_step)
     periods = np.geomspace(goal.longest, _PERIOD_RANGE_BEYOND * goal.longest, _PERIODS + 1)[1:]
-    old, new = (spectral_peaks(one, periods, goal.damping_ratio)[:, 0] for one in (before, after))
+    old, new = (
+        spectral_peaks(version, periods, goal.damping_ratio)[:, 0] for version in (before, after)
+    )
     growth = new / old
     most = int(growth.argmax())
-    return {**found, GROWTH: float(growth[most]), GROWTH_PERIOD: float(periods[most])}
+    return {**changes, GROWTH: float(growth[most]), GROWTH_PERIOD: float(periods[most])}
 
 
-def unusual_changes(found: dict[str, float]) -> list[str]:
+def unusual_changes(changes: dict[str, float]) -> list[str]:
     """Say which peaks have grown unusually, and whether the motion has become a pulse."""
     words: list[str] = []
     for name in PEAKS:
-        old, new = (found[f"{name}_{when}_matching"] for when in ("before", "after"))
+        old, new = (changes[f"{name}_{when}_matching"] for when in ("before", "after"))
         if new > MAX_USUAL_GROWTH * old:
             words.append(f"{name.replace('_', ' ')} {new / old:.3g} times")
-    if found[GROWTH] > MAX_USUAL_GROWTH:
+    if changes[GROWTH] > MAX_USUAL_GROWTH:
         words.append(
-            f"spectrum {found[GROWTH]:.3g} times at {found[GROWTH_PERIOD]:.3g} s, beyond the range"
+            f"spectrum {changes[GROWTH]:.3g} times at {changes[GROWTH_PERIOD]:.3g} s, beyond the "
+            "range"
         )
-    old, new = (found[f"{INDICATOR}_{when}_matching"] for when in ("before", "after"))
+    old, new = (changes[f"{INDICATOR}_{when}_matching"] for when in ("before", "after"))
     if new > velocity_pulses.MIN_INDICATOR >= old:
         words.append(f"a velocity pulse where none was (indicator {old:.2g}, now {new:.2g})")
     return words

@@ -97,9 +97,9 @@ def with_vertical(motion: MotionType, other: MotionValue | None) -> MotionType:
             "downwards; upwards is assumed"
         )
         warn(words, RecordWarning)
-    for label, one in (("horizontal", motion), ("vertical", other)):
-        if len(one) < count:
-            steps.append(f"{label} component padded with {count - len(one)} zeros")
+    for label, component in (("horizontal", motion), ("vertical", other)):
+        if len(component) < count:
+            steps.append(f"{label} component padded with {count - len(component)} zeros")
     result = Motion(padded(si.horizontal, count), upwards)
     added: dict[str, Any] = cleared_vertical_metadata(motion)
     added |= {
@@ -195,9 +195,9 @@ def rotated(
     turned = Signal(si.time_step, along * mine.samples + across * partner.samples, pieces)
     result = Motion(turned, None if si.vertical is None else padded(si.vertical, count))
     steps = [f"rotated by {degrees_text(turn, 9)} towards {_identity(other)}"]
-    for label, one in (("this", motion), ("the other", other)):
-        if len(one) < count:
-            steps.append(f"{label} component padded with {count - len(one)} zeros")
+    for label, component in (("this", motion), ("the other", other)):
+        if len(component) < count:
+            steps.append(f"{label} component padded with {count - len(component)} zeros")
     if _scale(motion) != _scale(other):  # no factor is that of both
         metadata["scale_factor"] = None
     known = None if other.recipe is None else dict(other.recipe)
@@ -205,7 +205,7 @@ def rotated(
     if known is not None:
         operation = {"rotated": {"other": known, "angle": f"{turn!r} {ANGLE.unit}"}}
     metadata["component"] = " and ".join(
-        str(one.metadata.get("component", one.name)) for one in (motion, other)
+        str(component.metadata.get("component", component.name)) for component in (motion, other)
     )
     metadata["component"] += f" rotated by {degrees_text(turn, 6)}"
     return derived_motion(motion, result, *steps, operation=operation, metadata=metadata)
@@ -227,9 +227,9 @@ def _azimuths(motion: MotionValue, other: MotionValue, owner: str) -> tuple[floa
 
     The azimuth is NaN if that of a component is not known.
     """
-    known = [one.metadata.get("azimuth") for one in (motion, other)]
-    degrees = [float(value) for value in known if isinstance(value, int | float)]
-    if len(degrees) < len(known):
+    azimuths = [component.metadata.get("azimuth") for component in (motion, other)]
+    degrees = [float(value) for value in azimuths if isinstance(value, int | float)]
+    if len(degrees) < len(azimuths):
         return math.nan, 1.0
     own, theirs = degrees
     apart = (theirs - own) % 360.0

@@ -137,21 +137,21 @@ def matched(
     owner, si = f"{type(motion).__name__}.matched", motion.si
     goal = _goal(target, periods, tolerance, owner)
     _check_motion(motion, si.horizontal, goal, owner)
-    found = match(si.horizontal, goal)
-    reached = found.misfit <= goal.tolerance
-    words = _words(target, goal, found)
+    result = match(si.horizontal, goal)
+    reached = result.misfit <= goal.tolerance
+    words = _words(target, goal, result)
     scaled = si.horizontal
-    if found.signal is not scaled:
-        samples = found.scale_factor * scaled.samples
+    if result.signal is not scaled:
+        samples = result.scale_factor * scaled.samples
         scaled = replace(scaled, samples=samples, polynomials=None)
-    changed = matching_changes(scaled, found.signal, goal)
-    added = {**_attributes_of(motion, target, found), "target_reached": int(reached), **changed}
+    changed = matching_changes(scaled, result.signal, goal)
+    added = {**_attributes_of(motion, target, result), "target_reached": int(reached), **changed}
     if not reached:
-        worst = float(goal.checked[np.abs(found.ratios - 1.0).argmax()])
+        worst = float(goal.checked[np.abs(result.ratios - 1.0).argmax()])
         msg = (
-            f"{owner}: {motion.name!r} is {100.0 * found.misfit:.3g} % from {target.name!r} at "
-            f"{worst:.3g} s, and {100.0 * found.mean_misfit:.2g} % on "
-            f"average; {100.0 * goal.tolerance:.3g} % was not reached in {found.steps} steps. "
+            f"{owner}: {motion.name!r} is {100.0 * result.misfit:.3g} % from {target.name!r} at "
+            f"{worst:.3g} s, and {100.0 * result.mean_misfit:.2g} % on "
+            f"average; {100.0 * goal.tolerance:.3g} % was not reached in {result.steps} steps. "
             "Another record, a narrower range of periods or a wider tolerance may help"
         )
         warn(msg, RecordWarning)
@@ -163,7 +163,7 @@ def matched(
             "record whose spectrum is closer to the target, or a narrower range of periods"
         )
         warn(msg, RecordWarning)
-    if found.signal is si.horizontal:
+    if result.signal is si.horizontal:
         return type(motion)(
             si,
             name=motion.name,
@@ -171,7 +171,7 @@ def matched(
             history=(*motion.history, words),
             recipe=motion.recipe,
         )
-    across = replace(si, horizontal=found.signal)
+    across = replace(si, horizontal=result.signal)
     return derived_motion(motion, across, words, *dropped_pieces_note(si), metadata=added)
 
 
@@ -194,9 +194,11 @@ def _goal(target: object, periods: object, tolerance: RatioLike, owner: str) -> 
     goal = MatchingGoal(
         lambda at: target.at_seconds(at, owner=owner), shortest, longest, damping, within
     )
-    wanted = goal.spectrum(goal.checked)
-    if not (np.isfinite(wanted).all() and (wanted > 0.0).all()):
-        worst = float(goal.checked[int(np.argmin(np.where(wanted > 0.0, wanted, -math.inf)))])
+    target_values = goal.spectrum(goal.checked)
+    if not (np.isfinite(target_values).all() and (target_values > 0.0).all()):
+        worst = float(
+            goal.checked[int(np.argmin(np.where(target_values > 0.0, target_values, -math.inf)))]
+        )
         msg = f"{owner}: {target.name!r} must be above zero, which it is not at {worst:.4g} s"
         raise ComponentError(msg)
     return goal
@@ -232,31 +234,33 @@ def _check_motion(motion: Any, signal: Signal, goal: MatchingGoal, owner: str) -
     warn_of_coarse_samples([replace(signal, polynomials=None)], shortest, owner=owner)
 
 
-def _attributes_of(motion: Any, target: Target, found: MatchResult) -> dict[str, str | float | int]:
+def _attributes_of(
+    motion: Any, target: Target, result: MatchResult
+) -> dict[str, str | float | int]:
     before = motion.metadata.get("scale_factor")
-    factor = found.scale_factor * (before if isinstance(before, int | float) else 1.0)
+    factor = result.scale_factor * (before if isinstance(before, int | float) else 1.0)
     return {
         "target_spectrum": target.name,
         "scale_factor": factor,
-        "spectral_misfit": float(np.sqrt((np.log(found.ratios) ** 2).mean())),
-        "largest_spectral_misfit": found.misfit,
-        "mean_spectral_misfit": found.mean_misfit,
-        "matching_steps": found.steps,
+        "spectral_misfit": float(np.sqrt((np.log(result.ratios) ** 2).mean())),
+        "largest_spectral_misfit": result.misfit,
+        "mean_spectral_misfit": result.mean_misfit,
+        "matching_steps": result.steps,
     }
 
 
-def _words(target: Target, goal: MatchingGoal, found: MatchResult) -> str:
+def _words(target: Target, goal: MatchingGoal, result: MatchResult) -> str:
     where = (
         f"{target.name}, damping ratio {goal.damping_ratio:.6g}, from {goal.shortest:.6g} s to "
         f"{goal.longest:.6g} s"
     )
     close = (
-        f"the spectrum is within {100.0 * found.misfit:.3g} % of the target, "
-        f"{100.0 * found.mean_misfit:.2g} % on the average"
+        f"the spectrum is within {100.0 * result.misfit:.3g} % of the target, "
+        f"{100.0 * result.mean_misfit:.2g} % on the average"
     )
-    if found.steps == 0 and found.scale_factor == 1.0:
+    if result.steps == 0 and result.scale_factor == 1.0:
         return f"not changed to match {where}: {close}"
     return (
-        f"scaled by {found.scale_factor!r} and matched to {where}, in {found.steps} steps with "
+        f"scaled by {result.scale_factor!r} and matched to {where}, in {result.steps} steps with "
         f"tapered cosine wavelets (Al Atik and Abrahamson 2010): {close}"
     )

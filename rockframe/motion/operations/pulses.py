@@ -101,20 +101,20 @@ class VelocityPulse(Generic[MotionType]):
     @property
     def unmet(self) -> tuple[str, ...]:
         """The criteria of a pulse-like motion that are not met, a sentence each."""
-        found: list[str] = []
+        criteria: list[str] = []
         if not self.indicator > MIN_INDICATOR:
-            found.append(f"indicator {self.indicator:.3g} is not above {MIN_INDICATOR:g}")
+            criteria.append(f"indicator {self.indicator:.3g} is not above {MIN_INDICATOR:g}")
         if not self.motion_start > self.pulse_start:
-            found.append(
+            criteria.append(
                 f"the pulse arrives late: a tenth of it at {self.pulse_start.m_as('s'):.4g} s, a "
                 f"fifth of the motion at {self.motion_start.m_as('s'):.4g} s"
             )
         peak = float(self.peak_velocity.m_as(str(VELOCITY.unit)))
         if not peak > MIN_PEAK_VELOCITY:
-            found.append(
+            criteria.append(
                 f"peak velocity {peak:.3g} {VELOCITY.unit} is not above {MIN_PEAK_VELOCITY:g}"
             )
-        return tuple(found)
+        return tuple(criteria)
 
     @property
     def pulse_like(self) -> bool:

@@ -74,15 +74,15 @@ def _read_modes(values: Mapping[str, Any], owner: str) -> _BuildingModes:
             "participation factor times the displacement of the floor in the mode shape"
         )
         raise ComponentError(msg)
-    each = [1.0] if value is None else _ratios(value, owner, "floor_participations", "1.2")
-    if len(each) != periods.size:
+    factors = [1.0] if value is None else _ratios(value, owner, "floor_participations", "1.2")
+    if len(factors) != periods.size:
         msg = (
             f"{owner}: floor_participations needs one value for each of the {periods.size} "
-            f"periods, got {len(each)}"
+            f"periods, got {len(factors)}"
         )
         raise ComponentError(msg)
-    arguments = {"periods": _quantity_texts(periods, PERIOD), "floor_participations": each}
-    return periods, np.array(each), "given modes", arguments
+    arguments = {"periods": _quantity_texts(periods, PERIOD), "floor_participations": factors}
+    return periods, np.array(factors), "given modes", arguments
 
 
 def _read_uniform_building(values: Mapping[str, Any], owner: str) -> _BuildingModes:
@@ -137,8 +137,8 @@ def _ratios(
     if isinstance(value, str) or not is_iterable(value):
         return [to_ratio(value, owner=owner, name=name, condition=condition, example=example)]
     return [
-        to_ratio(one, owner=owner, name=f"{name}[{k}]", condition=condition, example=example)
-        for k, one in enumerate(value)
+        to_ratio(ratio, owner=owner, name=f"{name}[{k}]", condition=condition, example=example)
+        for k, ratio in enumerate(value)
     ]
 
 
@@ -182,12 +182,12 @@ def _read_building(
     periods, participations, words, arguments = readers[0](values, owner)
     if "modes" in values:
         highest = periods.size
-        kept = checked_integer(
+        count = checked_integer(
             values["modes"], owner=owner, name="modes", lowest=1, highest=highest
         )
-        periods, participations = periods[:kept], participations[:kept]
-        words += f", of {highest} modes the first {kept}"
-        arguments["modes"] = kept
+        periods, participations = periods[:count], participations[:count]
+        words += f", of {highest} modes the first {count}"
+        arguments["modes"] = count
     ratios = _damping_ratios(damping_ratio, periods.size, owner)
     arguments["damping_ratio"] = ratios if len(set(ratios)) > 1 else ratios[0]
     return FloorModes(periods, np.array(ratios), participations), words, arguments
@@ -414,13 +414,13 @@ def _check_size(si: Motion, modes: FloorModes, duration: float, parts: int, owne
 
 def _modes_words(modes: FloorModes) -> str:
     rows = np.column_stack(modes).tolist()
-    each = [
+    phrases = [
         f"period {period:.9g} s, damping ratio {damping:.9g}, participation {participation:.9g}"
         for period, damping, participation in rows[:_MODES_LISTED]
     ]
     if len(rows) > _MODES_LISTED:
-        each.append(f"{len(rows) - _MODES_LISTED} further modes")
+        phrases.append(f"{len(rows) - _MODES_LISTED} further modes")
     rigid = modes.rigid_participation
     if abs(rigid) > _ROUNDING:
-        each.append(f"participation {rigid:.9g} with the ground")
-    return "; ".join(each)
+        phrases.append(f"participation {rigid:.9g} with the ground")
+    return "; ".join(phrases)

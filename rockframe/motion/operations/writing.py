@@ -85,8 +85,10 @@ def to_at2(
     event = str(motion.metadata.get("event", motion.name))
     station = str(motion.metadata.get("station", ""))
     # not every program reads characters outside ASCII
-    ascii_parts = (one.encode("ascii", "replace").decode() for one in (event, station, named))
-    parts = [" ".join(one.replace(",", " ").split()) for one in ascii_parts]
+    ascii_parts = (
+        ascii_part.encode("ascii", "replace").decode() for ascii_part in (event, station, named)
+    )
+    parts = [" ".join(ascii_part.replace(",", " ").split()) for ascii_part in ascii_parts]
     values = signal.samples / STANDARD_GRAVITY
     values[np.abs(values) < _SMALLEST] = 0.0
     samples = [f"{value:15.7E}" for value in values.tolist()]
@@ -111,5 +113,5 @@ def _is_source(motion: MotionValue, path: str | os.PathLike[str], content: bytes
     place = Path(path).expanduser()
     if digest is None or not place.is_file():
         return False
-    there = place.read_bytes()
-    return there != content and sha256(there).hexdigest() == digest
+    existing = place.read_bytes()
+    return existing != content and sha256(existing).hexdigest() == digest

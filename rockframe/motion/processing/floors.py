@@ -26,8 +26,8 @@ class FloorModes(NamedTuple):
     @property
     def participating(self) -> FloorModes:
         """The modes that are not rigid and have a participation at the floor."""
-        kept = (self.periods > 0.0) & (self.participations != 0.0)
-        return FloorModes(*(values[kept] for values in self))
+        participates = (self.periods > 0.0) & (self.participations != 0.0)
+        return FloorModes(*(values[participates] for values in self))
 
     @property
     def rigid_participation(self) -> float:
@@ -48,11 +48,11 @@ def interval_matrix(time_step: float, period: float, damping: float, powers: int
     both[:2] = step
     both[:2, 2:] *= (time_step / parts) ** 2
     both[2:, 2:] = linalg.pascal(powers, kind="upper", exact=False)
-    whole: Array = np.linalg.matrix_power(both, parts)[:2]
-    whole[:, 2:] /= float(parts) ** np.arange(powers)
-    whole[1] /= kappa
-    whole[:, 1] *= kappa
-    return whole
+    matrix: Array = np.linalg.matrix_power(both, parts)[:2]
+    matrix[:, 2:] /= float(parts) ** np.arange(powers)
+    matrix[1] /= kappa
+    matrix[:, 1] *= kappa
+    return matrix
 
 
 def modal_acceleration(pieces: Array, time_step: float, modes: FloorModes) -> Array:

@@ -230,7 +230,7 @@ def warn_of_coarse_samples(
     signals: Iterable[Signal], shortest: float, *, owner: str, remedy: str | None = None
 ) -> None:
     """Warn of records that are sampled too coarsely for the shortest period."""
-    steps = [one.time_step for one in signals if not one.analytic]
+    steps = [signal.time_step for signal in signals if not signal.analytic]
     coarse = [
         step for step in steps if shortest < MIN_SAMPLES_PER_PERIOD * step * (1.0 - _ROUNDING)
     ]

@@ -144,8 +144,8 @@ def strongest_wavelet(velocities: Array, dt: float, periods: Array) -> WaveletPe
     size = fft.next_fast_len(count + reach, real=True)
     transforms = np.fft.rfft(velocities, size)
     greatest, period, sample = -1.0, 0.0, 0
-    for one in periods.tolist():
-        wavelet = sampled_wavelet(one, dt)
+    for trial_period in periods.tolist():
+        wavelet = sampled_wavelet(trial_period, dt)
         transform = np.conj(np.fft.rfft(wavelet, size))
         products = np.fft.irfft(transforms * transform, size)
         # the velocity is zero before and after; a wavelet may extend beyond both ends
@@ -153,14 +153,17 @@ def strongest_wavelet(velocities: Array, dt: float, periods: Array) -> WaveletPe
         squares: Array = np.sum(coefficients**2, axis=0)
         top = int(np.argmax(squares))
         if squares[top] > greatest:
-            greatest, period, sample = float(squares[top]), one, top
+            greatest, period, sample = float(squares[top]), trial_period, top
     near = np.geomspace(period / PERIOD_RATIO, period * PERIOD_RATIO, 2 * _REFINEMENT + 1)
     near = near[(near >= periods[0]) & (near <= periods[-1])]
-    found = np.array(
-        [_coefficients_at(velocities, sample, sampled_wavelet(one, dt)) for one in near.tolist()]
+    refined = np.array(
+        [
+            _coefficients_at(velocities, sample, sampled_wavelet(trial_period, dt))
+            for trial_period in near.tolist()
+        ]
     )
-    best = int(np.argmax(np.sum(found**2, axis=1)))
-    direction = math.atan2(found[best, 1], found[best, 0]) if len(velocities) == 2 else 0.0
+    best = int(np.argmax(np.sum(refined**2, axis=1)))
+    direction = math.atan2(refined[best, 1], refined[best, 0]) if len(velocities) == 2 else 0.0
     return WaveletPeak(float(near[best]), sample, direction % math.pi)
 
 
@@ -246,5 +249,8 @@ def _coefficients_near(velocity: Array, samples: range, wavelet: Array) -> Array
 def _coefficients_at(velocities: Array, sample: int, wavelet: Array) -> Array:
     """Return the coefficient of a wavelet centred at a sample, for each component."""
     return np.array(
-        [_coefficients_near(one, range(sample, sample + 1), wavelet)[0] for one in velocities]
+        [
+            _coefficients_near(velocity, range(sample, sample + 1), wavelet)[0]
+            for velocity in velocities
+        ]
     )

@@ -70,7 +70,7 @@ class Certificate:
 
         Changes between those that were tried must be unlikely to have one, too.
         """
-        followed = all(found.flip is None and found.followed for _, found in self.nudged)
+        followed = all(scan.flip is None and scan.followed for _, scan in self.nudged)
         least = min(self.certification.nudge, self.certification.reach)
         return self.finished and followed and not self.margin < least
 
@@ -99,8 +99,8 @@ class Certificate:
     def _largest_peak_difference(self, others: list[RunSummary]) -> float:
         """Return the largest difference of peak rotations; NaN if a run was not finished [rad]."""
         apart = [
-            math.nan if one.overturned is None else abs(one.peak - self.base.peak)
-            for one in (self.base, *others)
+            math.nan if summary.overturned is None else abs(summary.peak - self.base.peak)
+            for summary in (self.base, *others)
         ]
         return float(np.max(apart))
 
@@ -309,19 +309,19 @@ def _scale_doubts(found: Certificate, ends: _OutcomeWords) -> list[str]:
     ]
 
 
-def _near_margin(found: Certificate) -> float:
+def _near_margin(certificate: Certificate) -> float:
     """Return the change of scale up to which a flip is near."""
-    return max(NEAR, found.certification.nudge)
+    return max(NEAR, certificate.certification.nudge)
 
 
-def _flip_is_near(found: Certificate) -> bool:
+def _flip_is_near(certificate: Certificate) -> bool:
     """Whether the known change of the verdict is at a scale near to 1."""
-    return abs(found.flip - 1.0) <= 2.0 * _near_margin(found)
+    return abs(certificate.flip - 1.0) <= 2.0 * _near_margin(certificate)
 
 
-def _scanned_range_words(found: Certificate) -> str:
+def _scanned_range_words(certificate: Certificate) -> str:
     """Say at which scales no other verdict was found; empty where none was tried."""
-    margin, along, what = found.margin, found.along, _excitation(found.plan)
+    margin, along, what = certificate.margin, certificate.along, _excitation(certificate.plan)
     if math.isnan(margin):
         return ""
     low, high = (f"{1.0 + sign * margin:.6g}" for sign in (-1.0, 1.0))
@@ -329,16 +329,18 @@ def _scanned_range_words(found: Certificate) -> str:
         f"No other verdict was found at the {along.within(margin)} scales of {what} tried from "
         f"{low} to {high}"
     )
-    lost = f"; {found.certification.runs} runs were too few to extend this range"
+    lost = f"; {certificate.certification.runs} runs were too few to extend this range"
     return text if along.followed else f"{text}{lost}"
 
 
-def _nearest_flip_words(found: Certificate) -> str:
+def _nearest_flip_words(certificate: Certificate) -> str:
     """Say which is the nearest scale with another verdict; empty where none is known."""
-    flip = found.flip
+    flip = certificate.flip
     if math.isnan(flip):
         return ""
-    return f"the nearest scale of {_excitation(found.plan)} with another verdict is {flip:.6g}"
+    return (
+        f"the nearest scale of {_excitation(certificate.plan)} with another verdict is {flip:.6g}"
+    )
 
 
 def _percent(change: float) -> str:

@@ -135,16 +135,18 @@ def with_shorter_steps(
     accuracy: Accuracy, system: Assembly, step: float, interval: float
 ) -> Accuracy:
     """Return settings with shorter steps than the mean one of a run; interval of its motion [s]."""
-    wanted = step / SHORTER
+    shorter = step / SHORTER
     if accuracy.substeps is not None:
         value = accuracy.substeps if isinstance(accuracy.substeps, int) else 1
-        substeps = math.ceil(max(interval / wanted, SHORTER * value))
+        substeps = math.ceil(max(interval / shorter, SHORTER * value))
         return replace(accuracy, substeps=min(substeps, MAX_SUBSTEPS))
     period = 2.0 * math.pi / system.model.fastest_frequency
-    per_period = max(period / wanted, SHORTER * accuracy.steps_per_period)
+    per_period = max(period / shorter, SHORTER * accuracy.steps_per_period)
     return replace(accuracy, steps_per_period=min(per_period, MAX_STEPS_PER_PERIOD))
 
 
 def divide_intervals(motion: GroundMotion, parts: int) -> GroundMotion:
     """Return the same function of time, with each interval divided into parts."""
-    return GroundMotion(motion.si.each(lambda one: divided_signal(one, parts)), name=motion.name)
+    return GroundMotion(
+        motion.si.each(lambda signal: divided_signal(signal, parts)), name=motion.name
+    )

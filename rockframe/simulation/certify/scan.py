@@ -68,9 +68,9 @@ class Side:
     # middles and lengths of intervals between runs of different course
     rough: list[tuple[float, float]] = field(default_factory=list)
 
-    def add(self, place: float, shown: RunSummary) -> None:
+    def add(self, place: float, summary: RunSummary) -> None:
         """Add a run by the size of its change."""
-        self.shown[place] = shown  # first, so that an interrupt leaves no place without a run
+        self.shown[place] = summary  # first, so that an interrupt leaves no place without a run
         insort(self.places, place)
         number = self.places.index(place)
         for near, far in pairwise(self.places[number - 1 : number + 2]):
@@ -118,13 +118,13 @@ def scan(
     tried: dict[float, RunSummary] = {}
 
     def try_at(side: Side, place: float) -> bool:
-        shown = run_at(side.sign * place)
-        if shown is None:
+        summary = run_at(side.sign * place)
+        if summary is None:
             side.closed = True
             return False
-        tried[side.sign * place] = shown
-        side.add(place, shown)
-        return shown.overturned == base.overturned
+        tried[side.sign * place] = summary
+        side.add(place, summary)
+        return summary.overturned == base.overturned
 
     reached = 0.0
     for place in first_changes:
@@ -137,7 +137,7 @@ def scan(
 
     while True:
         # the interval that may contain the nearest flip is the one that begins first
-        nearest = min(_flips(sides), key=lambda one: one[1:], default=None)
+        nearest = min(_flips(sides), key=lambda change: change[1:], default=None)
         if nearest is not None and not refine_flip:
             doubtful, end = None, nearest[1]
             break
@@ -176,15 +176,15 @@ def _nearest_doubtful_interval(
     sides: Sequence[Side], end: float, resolution: float
 ) -> _Task | None:
     """Return the nearest interval, up to an end, in which the verdict might change to and fro."""
-    found: list[_Task] = []
+    intervals: list[_Task] = []
     for side, other in zip(sides, reversed(sides), strict=True):
         for number, (near, far) in enumerate(side.intervals()):
             if near >= end or side.shown[far].overturned != side.shown[0.0].overturned:
                 break
             if _is_wide(near, far, resolution) and may_change_between(side, number, other):
-                found.append((side, near, far))
+                intervals.append((side, near, far))
                 break
-    return min(found, key=lambda one: one[1], default=None)
+    return min(intervals, key=lambda interval: interval[1], default=None)
 
 
 def may_change_between(side: Side, number: int, other: Side | None = None) -> bool:
@@ -199,16 +199,16 @@ def may_change_between(side: Side, number: int, other: Side | None = None) -> bo
     else:
         before = _NOT_ALIKE if other is None else _slopes(other, 0).reversed()
     after = _slopes(side, number + 1)
-    beside = [one for one in (before, after) if one.of]
+    beside = [run for run in (before, after) if run.of]
     for k, slope in enumerate(here.of):
         start, end = first.clearances[k], last.clearances[k]
-        spans = [min(length, EXTRAPOLATION * one.length) for one in beside]
+        spans = [min(length, EXTRAPOLATION * run.length) for run in beside]
         steep = max(
-            [abs(one.of[k]) * span for one, span in zip(beside, spans, strict=True)]
+            [abs(run.of[k]) * span for run, span in zip(beside, spans, strict=True)]
             + [abs(slope) * length]
         )
         bent = max(
-            [abs(slope - one.of[k]) * span for one, span in zip(beside, spans, strict=True)] + [0.0]
+            [abs(slope - run.of[k]) * span for run, span in zip(beside, spans, strict=True)] + [0.0]
         )
         if start + end > SLOPE_FACTOR * steep and min(start, end) > CURVATURE_FACTOR * bent:
             continue

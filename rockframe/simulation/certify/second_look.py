@@ -121,7 +121,7 @@ def doubts(setting: Setting, plan: Plan, first: Summary, second: Summary) -> Ite
     """Say whether the verdict or the peak of a run in fixed steps is not sure."""
     if first.overturned is None:
         return
-    mine, other = (look_at(setting, one, plan.duration) for one in (first, second))
+    mine, other = (look_at(setting, run, plan.duration) for run in (first, second))
     if (
         mine.overturned is other.overturned is False
         and max(mine.share, other.share) <= ROUNDED_PEAK

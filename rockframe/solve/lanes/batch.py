@@ -83,14 +83,14 @@ def copy_to_row(batch: Batch, row: Vector, lane: int, first: int, count: int) ->
 @inlined
 def row_equations(batch: Batch, row: Vector) -> BoundEquations:
     """Return the equations of a row's system."""
-    one, shape = batch.equations, batch.shape
+    bound, shape = batch.equations, batch.shape
     return BoundEquations(
-        march=one.march, slope=one.slope, powers=one.powers, columns=one.columns,
-        guards=one.guards, switch=one.switch, energies=one.energies,
-        mode_properties=one.mode_properties,
+        march=bound.march, slope=bound.slope, powers=bound.powers, columns=bound.columns,
+        guards=bound.guards, switch=bound.switch, energies=bound.energies,
+        mode_properties=bound.mode_properties,
         numbers=view_of(row, shape.numbers, shape.number_count),
-        coordinate_count=one.coordinate_count, variable_count=one.variable_count,
-        guard_count=one.guard_count,
+        coordinate_count=bound.coordinate_count, variable_count=bound.variable_count,
+        guard_count=bound.guard_count,
     )  # fmt: skip
 
 
@@ -98,10 +98,10 @@ def row_equations(batch: Batch, row: Vector) -> BoundEquations:
 def write_mode(batch: Batch, row: Vector) -> None:
     """Write what a run's mode means for its steps to its row."""
     counters = as_integers(view_of(row, fields.COUNTERS, at.COUNTERS))
-    whole = as_integers(view_of(row, fields.OWN_INTEGERS, fields.INTEGERS))
+    integers = as_integers(view_of(row, fields.OWN_INTEGERS, fields.INTEGERS))
     unpacked = unpack_mode(row_equations(batch, row), counters[at.MODE], batch.w.scratch)
-    whole[fields.MOVING] = unpacked.moving
-    whole[fields.IN_FLIGHT] = int(unpacked.contact == FLIGHT)
+    integers[fields.MOVING] = unpacked.moving
+    integers[fields.IN_FLIGHT] = int(unpacked.contact == FLIGHT)
     row[fields.OWN + fields.LONGEST_STEP] = unpacked.longest_step
 
 
@@ -121,15 +121,15 @@ def write_still_ground(terms: int, first: int, ground: Vector) -> None:
 
 
 @inlined
-def load_ground(batch: Batch, index: int, whole: Integers, ground: Vector) -> None:
+def load_ground(batch: Batch, index: int, integers: Integers, ground: Vector) -> None:
     """Write the ground motion of an interval into a lane."""
     x, y = batch.pieces.x, batch.pieces.y
-    if index < whole[fields.COUNT_X]:
-        write_ground(whole[fields.FIRST_X] + index, x, 0, ground)
+    if index < integers[fields.COUNT_X]:
+        write_ground(integers[fields.FIRST_X] + index, x, 0, ground)
     else:
         write_still_ground(x.shape[1], 0, ground)
-    if index < whole[fields.COUNT_Y]:
-        write_ground(whole[fields.FIRST_Y] + index, y, MAX_TERMS, ground)
+    if index < integers[fields.COUNT_Y]:
+        write_ground(integers[fields.FIRST_Y] + index, y, MAX_TERMS, ground)
     else:
         write_still_ground(y.shape[1], MAX_TERMS, ground)
 
@@ -141,9 +141,9 @@ def enter_interval(batch: Batch, lane: int) -> bool:
     clock, controls = lane_of(data, fields.CLOCK, lane), lane_of(data, fields.CONTROLS, lane)
     own, ground = lane_of(data, fields.OWN, lane), lane_of(data, fields.GROUND, lane)
     counters = lane_of(as_integers(data), fields.COUNTERS, lane)
-    whole = lane_of(as_integers(data), fields.OWN_INTEGERS, lane)
+    integers = lane_of(as_integers(data), fields.OWN_INTEGERS, lane)
     length, index = own[fields.LENGTH], counters[at.INTERVAL]
-    intervals = max(whole[fields.COUNT_X], whole[fields.COUNT_Y])
+    intervals = max(integers[fields.COUNT_X], integers[fields.COUNT_Y])
     begin = index * controls[at.TIME_STEP]
     if index >= intervals or begin + length >= controls[at.DURATION]:
         return True  # the run has come to its end
@@ -151,7 +151,7 @@ def enter_interval(batch: Batch, lane: int) -> bool:
     counters[at.INTERVAL] = index
     clock[at.INTO_INTERVAL] = 0.0
     own[fields.LENGTH] = interval_length(index, intervals, controls)
-    load_ground(batch, index, whole, ground)
+    load_ground(batch, index, integers, ground)
     if is_jump(ground[0], clock[at.GROUND_X]) or is_jump(ground[MAX_TERMS], clock[at.GROUND_Y]):
         counters[at.STALE] = 1
         return True
@@ -163,7 +163,7 @@ def run_alone(batch: Batch, row: Vector) -> int:
     """Run on to the end of the interval, or of the run, by the driver of single runs."""
     shape, equations, w = batch.shape, batch.equations, batch.w
     counters = as_integers(view_of(row, fields.COUNTERS, at.COUNTERS))
-    whole = as_integers(view_of(row, fields.OWN_INTEGERS, fields.INTEGERS))
+    integers = as_integers(view_of(row, fields.OWN_INTEGERS, fields.INTEGERS))
     width, slope, guards = len(w.inner_state), len(w.inner_powers), len(w.inner_guards)
     size = equations.coordinate_count
     state, new = shape.state, shape.state + shape.half
@@ -180,8 +180,8 @@ def run_alone(batch: Batch, row: Vector) -> int:
     )  # fmt: skip
     tolerance = view_of(row, behind + shape.memory, equations.guard_count + 1)
     pieces = Pieces(
-        view_of(batch.pieces.x, whole[fields.FIRST_X], whole[fields.COUNT_X]),
-        view_of(batch.pieces.y, whole[fields.FIRST_Y], whole[fields.COUNT_Y]),
+        view_of(batch.pieces.x, integers[fields.FIRST_X], integers[fields.COUNT_X]),
+        view_of(batch.pieces.y, integers[fields.FIRST_Y], integers[fields.COUNT_Y]),
     )
     progress = Progress(
         view_of(row, fields.CONTROLS, at.CONTROLS), view_of(row, fields.CLOCK, at.CLOCK), counters
@@ -202,10 +202,10 @@ def return_to_lane(batch: Batch, row: Vector, lane: int, everything: bool) -> No
     """Copy a run that has paused into a lane: everything, or only fields that have changed."""
     shape = batch.shape
     counters = as_integers(view_of(row, fields.COUNTERS, at.COUNTERS))
-    whole = as_integers(view_of(row, fields.OWN_INTEGERS, fields.INTEGERS))
+    integers = as_integers(view_of(row, fields.OWN_INTEGERS, fields.INTEGERS))
     controls = view_of(row, fields.CONTROLS, at.CONTROLS)
     write_mode(batch, row)
-    intervals = max(whole[fields.COUNT_X], whole[fields.COUNT_Y])
+    intervals = max(integers[fields.COUNT_X], integers[fields.COUNT_Y])
     row[fields.OWN + fields.LENGTH] = interval_length(counters[at.INTERVAL], intervals, controls)
     if everything:
         copy_to_lane(batch, row, lane, 0, shape.numbers + shape.number_count)
@@ -266,8 +266,8 @@ def advance_batch(batch: Batch, steps: BoundFunction) -> None:
     """Make all runs of a batch."""
     for lane in range(LANES):
         start_next_run(batch, lane)
-    found = fields.NO_STEP_MADE
-    while found == fields.ALL_QUIET or drive_lanes(batch) > 0:
-        found = steps.call(
+    outcome = fields.NO_STEP_MADE
+    while outcome == fields.ALL_QUIET or drive_lanes(batch) > 0:
+        outcome = steps.call(
             LANES, batch.data, batch.pieces.x, batch.pieces.y, batch.equations.numbers
         )

@@ -141,9 +141,9 @@ def is_at_end(data: Vector, lane: int) -> bool:
 @inlined
 def enters_next_interval(data: Vector, lane: int) -> bool:
     """Whether a lane is at the end of an interval after which run and motion continue."""
-    whole, controls = as_integers(data), lane_of(data, CONTROLS, lane)
-    own, numbers = lane_of(data, OWN, lane), lane_of(whole, OWN_INTEGERS, lane)
-    index, length = lane_of(whole, COUNTERS, lane)[at.INTERVAL], own[LENGTH]
+    integers, controls = as_integers(data), lane_of(data, CONTROLS, lane)
+    own, numbers = lane_of(data, OWN, lane), lane_of(integers, OWN_INTEGERS, lane)
+    index, length = lane_of(integers, COUNTERS, lane)[at.INTERVAL], own[LENGTH]
     x, y = numbers[COUNT_X], numbers[COUNT_Y]
     run_continues = index * controls[at.TIME_STEP] + length < controls[at.DURATION]
     motion_continues = (index + 1 < x) & ((index + 1 < y) | (y == 0))
@@ -166,10 +166,10 @@ def load_next_interval(
 @inlined
 def enter_next_interval(data: Vector, lane: int) -> int:
     """Move a lane to its next interval unless the ground jumps; return 1 if it waits, else 0."""
-    whole = as_integers(data)
+    integers = as_integers(data)
     clock, controls = lane_of(data, CLOCK, lane), lane_of(data, CONTROLS, lane)
-    own, numbers = lane_of(data, OWN, lane), lane_of(whole, OWN_INTEGERS, lane)
-    counters, ground = lane_of(whole, COUNTERS, lane), lane_of(data, GROUND, lane)
+    own, numbers = lane_of(data, OWN, lane), lane_of(integers, OWN_INTEGERS, lane)
+    counters, ground = lane_of(integers, COUNTERS, lane), lane_of(data, GROUND, lane)
     waits = is_at_end(data, lane)
     ground_jumps = is_jump(ground[0], clock[at.GROUND_X]) | is_jump(
         ground[MAX_TERMS], clock[at.GROUND_Y]

@@ -81,8 +81,8 @@ class Outcomes:
 
 def join_outcomes(several: Sequence[Outcomes]) -> Outcomes:
     """Join outcomes, one below the other."""
-    columns = [vars(one).values() for one in several]
-    return Outcomes(*(np.concatenate(each) for each in zip(*columns, strict=True)))
+    columns = [vars(outcomes).values() for outcomes in several]
+    return Outcomes(*(np.concatenate(column) for column in zip(*columns, strict=True)))
 
 
 def batch_key(model: ContactModel) -> Any:
@@ -96,8 +96,8 @@ def can_run_in_lanes(run: LaneRun, patience: float) -> bool:
     Compiles what they need if that takes at most `patience` [s]. There are no lanes in plain
     Python.
     """
-    rows, one = _Rows([run]), np.zeros(1, dtype=np.int64)
-    return compiled_within(patience, advance_batch, rows.batch([None], one, one), rows.steps)
+    rows, first = _Rows([run]), np.zeros(1, dtype=np.int64)
+    return compiled_within(patience, advance_batch, rows.batch([None], first, first), rows.steps)
 
 
 def integrate_lanes(
@@ -131,17 +131,19 @@ def integrate_lanes(
 
 def _batches(motions: Sequence[Motion | None], motion_of: IntegerArray) -> list[slice]:
     """Divide cases into batches whose motions fit into the caches."""
-    sizes = np.array([0 if one is None else one.horizontal.samples.size * 2 for one in motions])
-    found: list[slice] = []
+    sizes = np.array(
+        [0 if motion is None else motion.horizontal.samples.size * 2 for motion in motions]
+    )
+    batches: list[slice] = []
     begin, seen, total = 0, set[int](), 0
     for case, k in enumerate(motion_of.tolist()):
         if k not in seen and total + sizes[k] > MAX_COEFFICIENTS and case > begin:
-            found.append(slice(begin, case))
+            batches.append(slice(begin, case))
             begin, seen, total = case, set(), 0
         if k not in seen:
             seen.add(k)
             total += int(sizes[k])
-    return [*found, slice(begin, len(motion_of))]
+    return [*batches, slice(begin, len(motion_of))]
 
 
 def initial_rows(model: ContactModel, start: RunStart, count: int = 1) -> Matrix:
@@ -180,7 +182,7 @@ class _Rows:
         self._count = len(self._equations.numbers)
         self._memory = len(first.memory)
         self._rows = np.concatenate([
-            initial_rows(one.model, one.start) if one.rows is None else one.rows for one in runs
+            initial_rows(run.model, run.start) if run.rows is None else run.rows for run in runs
         ])  # fmt: skip
 
     @property
@@ -203,10 +205,10 @@ class _Rows:
         own = rows.view(np.int64)[:, fields.OWN_INTEGERS : fields.OWN_INTEGERS + fields.INTEGERS]
         both = [pieces_of(motion) for motion in motions]
         x, own[:, fields.FIRST_X], own[:, fields.COUNT_X] = _stacked(
-            [one.x for one in both], motion_of
+            [pieces.x for pieces in both], motion_of
         )
         y, own[:, fields.FIRST_Y], own[:, fields.COUNT_Y] = _stacked(
-            [one.y for one in both], motion_of
+            [pieces.y for pieces in both], motion_of
         )
         indices = self._indices
         shape = BatchSizes(
@@ -241,12 +243,12 @@ def _stacked(
     pieces: Sequence[Matrix], motion_of: IntegerArray
 ) -> tuple[Matrix, IntegerArray, IntegerArray]:
     """Join polynomials of motions, one below the other; give first row and count of each case."""
-    terms = max(one.shape[1] for one in pieces)
-    counts = np.array([len(one) for one in pieces], dtype=np.int64)
+    terms = max(polynomials.shape[1] for polynomials in pieces)
+    counts = np.array([len(polynomials) for polynomials in pieces], dtype=np.int64)
     # -0 + x is x, whatever the sign of x
     stacked = np.full((int(counts.sum()), terms), -0.0)
     first = np.concatenate([[0], np.cumsum(counts)])[:-1]
-    for begin, one in zip(first.tolist(), pieces, strict=True):
-        stacked[begin : begin + len(one), : one.shape[1]] = one
+    for begin, polynomials in zip(first.tolist(), pieces, strict=True):
+        stacked[begin : begin + len(polynomials), : polynomials.shape[1]] = polynomials
     stacked.setflags(write=False)
     return stacked, first[motion_of], counts[motion_of]

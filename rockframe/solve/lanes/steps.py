@@ -69,15 +69,15 @@ def is_sliding(system: Equations, data: Vector, lane: int) -> bool:
 def is_quiet(system: Equations, data: Vector, lane: int) -> bool:
     """Whether a lane's step is quiet; writes the guards at its end."""
     indices = field_indices(system)
-    own, whole = lane_of(data, fields.OWN, lane), as_integers(data)
-    clock, counters = lane_of(data, fields.CLOCK, lane), lane_of(whole, fields.COUNTERS, lane)
+    own, integers = lane_of(data, fields.OWN, lane), as_integers(data)
+    clock, counters = lane_of(data, fields.CLOCK, lane), lane_of(integers, fields.COUNTERS, lane)
     state, new = lane_of(data, indices.state, lane), lane_of(data, indices.new_state, lane)
     limits = lane_of(data, fields.LIMITS, lane)
     after, h = lane_of(data, indices.new_guards, lane), own[fields.STEP]
     ground = Ground(own[fields.STAGE_X], own[fields.STAGE_Y])
     held = system.without_sliding(counters[at.MODE])
-    found = system.guards_in(held, new, lane_of(data, indices.new_slope, lane), ground)
-    put_guards(system, found, new, limits, after)
+    guards = system.guards_in(held, new, lane_of(data, indices.new_slope, lane), ground)
+    put_guards(system, guards, new, limits, after)
     falls = some_guard_may_fall(system, h, lane_of(data, indices.guards, lane), after)
     rotation = rotation_in_step(0, system.coordinates(), limits, state, new)
     peaks = rotation.may_peak(h, clock[at.PEAK_LEFT], clock[at.PEAK_RIGHT])
@@ -92,7 +92,7 @@ def leave_ground_peaks(
 
     At rest the guards follow the ground alone, and may fall inside such a step.
     """
-    found = 0
+    some = 0
     degree_x, degree_y = pieces_x.shape[1] - 1, pieces_y.shape[1] - 1
     for lane in range(lanes):
         own = lane_of(as_integers(data), fields.OWN_INTEGERS, lane)
@@ -101,8 +101,8 @@ def leave_ground_peaks(
         rests = (own[fields.MOVING] == 0) & (own[fields.BUSY] == 1)
         if rests and ground_may_peak(x, y, lane_of(data, fields.GROUND, lane)):
             own[fields.ACCEPTED] = 0
-            own[fields.NEEDS_DRIVER] = found = 1
-    return found
+            own[fields.NEEDS_DRIVER] = some = 1
+    return some
 
 
 @inlined
@@ -116,7 +116,7 @@ def has_reached_step_limit(data: Vector, lane: int) -> bool:
 def write_new_clock(system: Equations, data: Vector, lane: int) -> None:
     """Write the clock of a lane's run after its step, but for the length of the next step."""
     indices = field_indices(system)
-    own, whole = lane_of(data, fields.OWN, lane), as_integers(data)
+    own, integers = lane_of(data, fields.OWN, lane), as_integers(data)
     clock = lane_of(data, fields.CLOCK, lane)
     start, end, works, new = (
         lane_of(data, indices.state, lane), lane_of(data, indices.new_state, lane),
@@ -125,7 +125,7 @@ def write_new_clock(system: Equations, data: Vector, lane: int) -> None:
     limits, h = lane_of(data, fields.LIMITS, lane), own[fields.STEP]
     rotation = rotation_in_step(0, system.coordinates(), limits, start, end)
     flight = clock[at.FLIGHT_TIME]
-    flies = lane_of(whole, fields.OWN_INTEGERS, lane)[fields.IN_FLIGHT]
+    flies = lane_of(integers, fields.OWN_INTEGERS, lane)[fields.IN_FLIGHT]
     supplied = clock[at.SUPPLIED] + works[1]
     new[at.INTO_INTERVAL] = clock[at.INTO_INTERVAL] + h
     new[at.FLIGHT_TIME] = flight + h if flies == 1 else flight
@@ -156,15 +156,15 @@ def accept_step_if_quiet(system: Equations, data: Vector, lane: int) -> None:
     By bitwise operations: writing under a condition is slow on processors without mask
     registers.
     """
-    indices, whole = field_indices(system), as_integers(data)
-    accepted_bits = lane_of(whole, fields.OWN_INTEGERS, lane)[fields.ACCEPTED]
-    start, end = lane_of(whole, indices.state, lane), lane_of(whole, indices.new_state, lane)
-    clock, new = lane_of(whole, fields.CLOCK, lane), lane_of(whole, indices.clock, lane)
+    indices, integers = field_indices(system), as_integers(data)
+    accepted_bits = lane_of(integers, fields.OWN_INTEGERS, lane)[fields.ACCEPTED]
+    start, end = lane_of(integers, indices.state, lane), lane_of(integers, indices.new_state, lane)
+    clock, new = lane_of(integers, fields.CLOCK, lane), lane_of(integers, indices.clock, lane)
     for i in range(indices.new_state - indices.state):
         start[i] = (end[i] & accepted_bits) | (start[i] & ~accepted_bits)
     for i in range(at.STEP_CLOCK):
         clock[i] = (new[i] & accepted_bits) | (clock[i] & ~accepted_bits)
-    lane_of(whole, fields.COUNTERS, lane)[at.STEPS] -= accepted_bits
+    lane_of(integers, fields.COUNTERS, lane)[at.STEPS] -= accepted_bits
 
 
 @inlined
@@ -182,9 +182,9 @@ def choose_step(data: Vector, lane: int) -> None:
 def make_step(scheme: FixedSteps, system: Equations, data: Vector, lane: int) -> bool:
     """Make the step of one lane; return whether its end is finite."""
     indices = field_indices(system)
-    own, whole = lane_of(data, fields.OWN, lane), as_integers(data)
-    mode = system.without_sliding(lane_of(whole, fields.COUNTERS, lane)[at.MODE])
-    count = lane_of(whole, fields.OWN_INTEGERS, lane)[fields.MOVING]
+    own, integers = lane_of(data, fields.OWN, lane), as_integers(data)
+    mode = system.without_sliding(lane_of(integers, fields.COUNTERS, lane)[at.MODE])
+    count = lane_of(integers, fields.OWN_INTEGERS, lane)[fields.MOVING]
     return make_fixed_step(
         scheme, InlinedEquations(system), mode, count, own[fields.STEP],
         Ground(own[fields.MIDDLE_X], own[fields.MIDDLE_Y]),
@@ -309,11 +309,11 @@ def evaluate_stage(system: Equations, data: Vector, lane: int) -> None:
     """Write the slope of a lane's stage."""
     indices, own = field_indices(system), lane_of(data, fields.OWN, lane)
     mode = lane_of(as_integers(data), fields.COUNTERS, lane)[at.MODE]
-    found = system.accelerate(
+    slope = system.accelerate(
         system.without_sliding(mode), lane_of(data, indices.new_state, lane),
         Ground(own[fields.STAGE_X], own[fields.STAGE_Y]),
     )  # fmt: skip
-    put(found, 0, lane_of(data, indices.new_slope, lane))
+    put(slope, 0, lane_of(data, indices.new_slope, lane))
 
 
 @kernel
@@ -413,19 +413,19 @@ def update_reference(system: Equations, data: Vector, lane: int) -> None:
 def choose_next_step(data: Vector, lane: int, indices: FieldIndices) -> int:
     """Choose a lane's next step after one accepted or refused; return 1 if the driver is needed."""
     clock, controls = lane_of(data, fields.CLOCK, lane), lane_of(data, fields.CONTROLS, lane)
-    whole = lane_of(as_integers(data), fields.OWN_INTEGERS, lane)
+    integers = lane_of(as_integers(data), fields.OWN_INTEGERS, lane)
     h, error_norm = lane_of(data, fields.OWN, lane)[fields.STEP], clock[at.ERROR_NORM]
-    if whole[fields.REJECTED] == 1:
+    if integers[fields.REJECTED] == 1:
         h_next = next_step(h, h, error_norm)
         if h_next <= SHORTEST_STEP * controls[at.DURATION]:
-            whole[fields.NEEDS_DRIVER] = 1
+            integers[fields.NEEDS_DRIVER] = 1
             return 1
         clock[at.NEXT_STEP] = h_next
         lane_of(as_integers(data), fields.COUNTERS, lane)[at.REJECTED] += 1
-    elif whole[fields.ACCEPTED] != 0:
+    elif integers[fields.ACCEPTED] != 0:
         new = lane_of(data, indices.clock, lane)
         new[at.NEXT_STEP] = adapted_step(h, clock[at.NEXT_STEP], error_norm, controls)
-    return int(whole[fields.NEEDS_DRIVER])
+    return int(integers[fields.NEEDS_DRIVER])
 
 
 @inlined
