@@ -70,7 +70,8 @@ def times_to_si(value: object, *, owner: str, name: str) -> Array:
             msg = f"{owner}: {name} needs two or more dates, and none missing"
             raise ComponentError(msg)
     elif isinstance(value, xr.DataArray):
-        factor = to_si(f"1 {value.attrs.get('units', '')}", TIME, owner=owner, name=name)
+        unit, _ = _unit_and_origin(value.attrs.get("units", ""))
+        factor = to_si(f"1 {unit}", TIME, owner=owner, name=name)
         values = value.values
     elif _is_quantity(value):
         argument = cast("Any", value)
@@ -137,6 +138,12 @@ def _has_unit(value: object) -> TypeGuard[tuple[object, str]]:
     return isinstance(value, tuple) and len(value) == 2 and isinstance(value[1], str)  # pyright: ignore[reportUnknownArgumentType]
 
 
+def _unit_and_origin(unit: object) -> tuple[str, str]:
+    """Divide the unit of times since a date, as UDUNITS writes it."""
+    one, _, origin = str(unit).partition(" since ")
+    return one, origin
+
+
 class TimeAxis(NamedTuple):
     """Times of an array."""
 
@@ -189,7 +196,7 @@ def _time_axis(axis: object, unit: object) -> TimeAxis | None:
         )
     if values.dtype.kind != "f":
         return None
-    one, _, origin = str(unit).partition(" since ")  # as UDUNITS writes times since a date
+    one, origin = _unit_and_origin(unit)
     try:
         scale = to_si(f"1 {one}", TIME, owner="relative_seconds", name="unit")
     except UnitsError:  # such as numbers of samples

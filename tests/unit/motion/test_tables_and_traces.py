@@ -92,6 +92,14 @@ class TestFromTimes:
         np.testing.assert_allclose(motion.si.horizontal.samples, expected, atol=1e-12)
         assert "0.007 s to 0.013 s apart, straight lines between them" in motion.history[0]
 
+    def test_times_since_a_date(self):
+        axis = xr.DataArray(UNEVEN / 60.0, attrs={"units": "minutes since 2020-02-03"})
+        found, expected = (
+            GroundMotion.from_times(times, (VALUES, "m/s^2"), "0.005 s").si.horizontal.samples
+            for times in (axis, (UNEVEN, "s"))
+        )
+        np.testing.assert_allclose(found, expected, atol=1e-10)
+
     def test_cubic_interpolation_reproduces_cubic(self):
         cubic = 1.0 + UNEVEN - 3.0 * UNEVEN**2 + 0.5 * UNEVEN**3
         motion = GroundMotion.from_times(
