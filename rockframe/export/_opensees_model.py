@@ -18,10 +18,10 @@ LIBRARIES = ("libquadmath.so.0", "libgfortran.so.4", "libblas.so.3", "liblapack.
 
 def opensees() -> Any:
     """Import OpenSees; its wheel for Linux needs its own libraries to be loaded first."""
-    found = importlib.util.find_spec("openseespylinux")
-    if found is not None and found.origin is not None:
+    spec = importlib.util.find_spec("openseespylinux")
+    if spec is not None and spec.origin is not None:
         for name in LIBRARIES:
-            library = Path(found.origin).parent / "lib" / name
+            library = Path(spec.origin).parent / "lib" / name
             if library.is_file():
                 ctypes.CDLL(str(library), mode=ctypes.RTLD_GLOBAL)
     return importlib.import_module("openseespy.opensees")

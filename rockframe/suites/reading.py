@@ -154,12 +154,12 @@ class _SuiteReader:
             raise
         except Exception as problem:
             # a fault of a reader excludes one file, not the folder, and is reported as such
-            found = f"found what the reader fails at ({type(problem).__name__}: {problem})"
-            self.unread.append(Unread(file.path, f"{found[:300]}; {PLEASE_REPORT}"))
+            reason = f"found what the reader fails at ({type(problem).__name__}: {problem})"
+            self.unread.append(Unread(file.path, f"{reason[:300]}; {PLEASE_REPORT}"))
             return
         if file.sha256 in self._digests:
-            found = f"found a copy of {self._digests[file.sha256]}; expected each record once"
-            self.unread.append(Unread(file.path, found))
+            reason = f"found a copy of {self._digests[file.sha256]}; expected each record once"
+            self.unread.append(Unread(file.path, reason))
             return
         self._digests[file.sha256] = file.path
         number = len(self._digests)
