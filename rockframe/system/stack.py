@@ -143,11 +143,13 @@ class StackSetting(StackedBodies):
             if not rigid:
                 continue
             load = rigid_base_load(self, k, self._link_states_at_rest)
-            if load.left_limit < 0.0 or load.right_limit < 0.0:
-                side = "right" if load.right_limit < 0.0 else "left"
-                faults.append(
-                    f"weights and restrainers tip body {k + 1} to the {side}, off its rigid base"
-                )
+            done = None
+            if load.normal <= 0.0:
+                done = f"lift body {k + 1}"
+            elif load.left_limit < 0.0 or load.right_limit < 0.0:
+                done = f"tip body {k + 1} to the {'right' if load.right_limit < 0.0 else 'left'},"
+            if done is not None:
+                faults.append(f"weights, loads and restrainers {done} off its rigid base")
         if faults:
             raise AssemblyError(faults)
         return poses

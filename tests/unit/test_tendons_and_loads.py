@@ -115,6 +115,19 @@ def test_links_of_all_kinds_share_compiled_code(base):
     assert [one.modes() / systems[1].modes() for one in systems] == [4, 1, 2, 8]
 
 
+@pytest.mark.parametrize(
+    ("force", "words"),
+    [
+        ({"vertical": f"{-2.0 * WEIGHT!r} N"}, "restrainers lift body 1 off its rigid base"),
+        ({"vertical": f"{-BLOCK.si.mass * GRAVITY!r} N"}, "restrainers lift body 1 off"),
+        ({"horizontal": "1 MN"}, "restrainers tip body 1 to the right, off its rigid base"),
+    ],
+)
+def test_loads_that_lift_or_tip_a_body_at_rest_are_refused(force, words):
+    with pytest.raises(AssemblyError, match=words):
+        rf.System(BLOCK, rf.Load(at=("0 m", "8 m"), **force))
+
+
 def test_work_of_a_load_is_potential_energy_with_restrainers():
     slack = rf.Restrainer(on=("-1 m", "6 m"), to=("-3 m", "6 m"), stiffness="1 MN/m", slack="9 m")
     with plain_python():
