@@ -157,7 +157,7 @@ def run_chunks(
     None among the chunks means that all others are being run elsewhere; the iterator is asked
     again later. `on_poll` is called periodically.
     """
-    if executor is not None and not hasattr(executor, "submit"):
+    if executor is not None and (isinstance(executor, type) or not hasattr(executor, "submit")):
         msg = f"{OWNER}: executor must be a concurrent.futures.Executor, got {short_repr(executor)}"
         raise ComponentError(msg)
     stop = Event()
@@ -205,6 +205,9 @@ def _submit(
         return pool.submit(run, job)
     except BrokenExecutor as problem:
         raise _executor_error(problem) from problem
+    except RuntimeError as problem:  # it has been shut down
+        msg = f"the executor takes no work: {problem}; call {OWNER} inside its with block"
+        raise StudyError(msg) from problem
 
 
 def _executor_error(problem: Exception) -> StudyError:

@@ -170,3 +170,10 @@ def test_pool_broken_on_submit_raises():
 
     with Broken(1) as pool, pytest.raises(StudyError, match=r"BrokenExecutor: a child.*have died"):
         rf.sweep(scene_killed_once, PULSE, height=HEIGHTS, executor=pool)
+
+
+def test_executor_that_has_been_shut_down_is_refused():
+    with ThreadPoolExecutor(1) as pool:
+        pass
+    with pytest.raises(StudyError, match=r"takes no work: .* after shutdown; call sweep inside"):
+        rf.sweep(SYSTEM, PULSE, scale=[1.0], executor=pool)

@@ -1,5 +1,7 @@
 """Axes, tables and motions of a sweep, and refusals before anything runs."""
 
+from concurrent.futures import ThreadPoolExecutor
+
 import numpy as np
 import pandas as pd
 import pint
@@ -347,6 +349,7 @@ def test_invalid_sweeps_are_refused_with_all_faults():
     ("option", "words"),
     [
         ({"executor": 4}, "executor must be a concurrent.futures.Executor"),
+        ({"executor": ThreadPoolExecutor}, "executor must be a concurrent.futures.Executor, got"),
         ({"chunk": 0}, "chunk must be a whole number"),
         ({"progress": "yes"}, "progress must be True, False or None"),
     ],
