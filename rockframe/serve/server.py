@@ -9,7 +9,7 @@ from functools import partial
 from http import HTTPStatus
 from http.server import BaseHTTPRequestHandler, ThreadingHTTPServer
 from pathlib import Path
-from typing import Final
+from typing import Any, Final
 from urllib.parse import parse_qsl, urlsplit
 
 from rockframe import plot
@@ -94,6 +94,11 @@ class Server(ThreadingHTTPServer):
             self._outcomes.move_to_end(toml)
             return self._outcomes[toml]
 
+    def handle_error(self, request: Any, client_address: Any) -> None:
+        """Report no client that is gone: a browser leaves what a newer request replaces."""
+        if not isinstance(sys.exception(), ConnectionError):
+            super().handle_error(request, client_address)
+
     def _simulate(self, choice: TrialScene, toml: str) -> TrialOutcome:
         with collected_warnings() as warned:
             motion = choice.ground_motion(self.record)
@@ -115,7 +120,12 @@ class _RequestHandler(BaseHTTPRequestHandler):
             words = "This page answers to its own address on this machine only.\n"
             self._send(HTTPStatus.FORBIDDEN, "text/plain; charset=utf-8", words)
             return
-        target = urlsplit(self.path)
+        try:
+            target = urlsplit(self.path)
+        except ValueError as problem:
+            words = f"This is no address of a page: {problem}\n"
+            self._send(HTTPStatus.BAD_REQUEST, "text/plain; charset=utf-8", words)
+            return
         if target.path in _FILES:
             text = Path(__file__).with_name(target.path.removeprefix("/")).read_text("utf-8")
             self._send(HTTPStatus.OK, f"{_FILES[target.path]}; charset=utf-8", text)
@@ -197,10 +207,7 @@ class _RequestHandler(BaseHTTPRequestHandler):
         }.items():
             self.send_header(name, value)
         self.end_headers()
-        try:
-            self.wfile.write(data)
-        except (BrokenPipeError, ConnectionResetError):  # the browser has a newer request
-            self.close_connection = True
+        self.wfile.write(data)
 
     def log_message(self, format: str, *args: object) -> None:  # noqa: A002
         """Log no requests."""

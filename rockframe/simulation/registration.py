@@ -3,8 +3,6 @@
 from collections.abc import Callable, Mapping, Sequence
 from typing import Any, Final, cast
 
-import pint
-
 from rockframe.arguments import checked_list
 from rockframe.components import Block, Component
 from rockframe.errors import raise_faults, short_repr
@@ -23,7 +21,7 @@ from rockframe.system.parts import (
     add_part_class,
     slot_of_class,
 )
-from rockframe.units import Unit
+from rockframe.units import Unit, unit_registry
 
 _OWNER: Final = "register"
 USER_BASE_SLOTS: Final = ("pads", "soil")
@@ -258,7 +256,7 @@ def _unit_faults(unit: Any, owner: str) -> list[str]:
     if unit is None or isinstance(unit, Unit):
         return []
     try:
-        pint.get_application_registry().parse_units(unit)
+        unit_registry().parse_units(unit)
     except Exception:  # whatever pint makes of it
         return [f"{owner} has the unit {unit!r}, which pint cannot read"]
     return []

@@ -38,6 +38,7 @@ from rockframe.units.reading import (
     to_ratio,
     to_si,
     to_si_values,
+    unit_registry,
 )
 from rockframe.units.spelling import (
     angle_words,
@@ -86,4 +87,5 @@ __all__ = [
     "to_ratio",
     "to_si",
     "to_si_values",
+    "unit_registry",
 ]

@@ -6,6 +6,7 @@ The application registry of pint is used and never changed. Quantities are conve
 
 import math
 import re
+import threading
 from collections.abc import Iterable, Sequence
 from contextlib import suppress
 from decimal import Context, Decimal
@@ -44,9 +45,20 @@ _MAX_FACTOR_LENGTH: Final = 12
 """Characters of a conversion factor that is exact with few digits: 0.45359237 kg, 1e-06 m."""
 
 
+_registry_lock = threading.Lock()
+
+
+def unit_registry() -> Any:
+    """Return the application registry of pint, built by one thread while others wait."""
+    registry: Any = pint.get_application_registry()
+    with _registry_lock:
+        registry.Quantity  # noqa: B018 - pint builds its registry at the first access
+    return registry
+
+
 def quantity(value: "float | npt.NDArray[np.float64]", measure: Measure) -> Quantity:
     """Make a quantity of pint from a value in SI units."""
-    return pint.get_application_registry().Quantity(value, str(measure.unit))
+    return unit_registry().Quantity(value, str(measure.unit))
 
 
 def to_si(
@@ -121,7 +133,7 @@ def check_attached_unit(values: object, unit: str, *, owner: str, name: str) -> 
     attached = attached_unit(values)
     if attached is None or attached == unit:
         return
-    units: Any = pint.get_application_registry()
+    units = unit_registry()
     try:  # powers as UDUNITS writes them
         both = [
             units.Quantity(1, re.sub(r"(?<=[A-Za-z])(?=-?\d)", "^", u)) for u in (attached, unit)
@@ -278,7 +290,7 @@ def _parse(value: object, measure: Measure, *, owner: str, name: str) -> Quantit
         msg = f"{needed}, got {short_repr(value)}, which is not {expected}{hint}; {example}"
         raise UnitsError(msg)
     try:
-        return pint.get_application_registry().Quantity(written)
+        return unit_registry().Quantity(written)
     except Exception as problem:  # pint's parser raises many unrelated types
         hint = misread_unit_hint(value, measure)
         msg = f"{needed}, got {short_repr(value)}, whose unit cannot be read{hint}; {example}"

@@ -281,3 +281,16 @@ def test_degree_sign_has_no_preceding_space():
     assert "(12.04°)" in text
     assert "(16.04°)" in text
     assert " deg" not in text.replace("2 deg", "")
+
+
+def test_first_quantities_of_several_threads_are_read():
+    script = """
+from concurrent.futures import ThreadPoolExecutor
+import rockframe as rf
+masses = [f"{number} t" for number in range(1, 9)]
+with ThreadPoolExecutor(8) as pool:
+    blocks = pool.map(lambda mass: rf.Block(width="0.8 m", height="3 m", mass=mass), masses)
+    print([round(block.mass.to("t").magnitude) for block in blocks])
+"""
+    done = subprocess.run([sys.executable, "-c", script], capture_output=True, text=True)
+    assert (done.stdout, done.stderr) == (f"{[*range(1, 9)]}\n", "")

@@ -1,10 +1,13 @@
 """The local page: access, reports of wrong values, and the scene file for download."""
 
 import re
+import socket
+import struct
 import subprocess
 import threading
 from http.client import HTTPConnection
 from shutil import which
+from time import sleep
 from urllib.parse import urlencode
 
 import numpy as np
@@ -189,3 +192,23 @@ def test_browser_renders_the_page(server, tmp_path):
     assert "Did not overturn: peak rotation" in done.stdout
     assert 'stiffness = "20 MN/m"' in done.stdout
     assert 'data-of="soil" hidden' in done.stdout
+
+
+def test_clients_that_leave_are_not_reported(server, ask, capsys):
+    head = f"GET / HTTP/1.0\r\nHost: 127.0.0.1:{server.server_port}\r\n\r\n".encode()
+    with server._lock:  # so that the answers are late
+        for sent in (head, head[:9]):
+            client = socket.create_connection(("127.0.0.1", server.server_port))
+            client.sendall(sent)
+            sleep(0.05)
+            client.setsockopt(socket.SOL_SOCKET, socket.SO_LINGER, struct.pack("ii", 1, 0))
+            client.close()  # with a reset
+    assert ask("/")[0] == 200
+    sleep(0.2)
+    assert capsys.readouterr().err == ""
+
+
+def test_address_that_cannot_be_read_is_answered(ask, capsys):
+    status, text, _ = ask("http://[")
+    assert (status, text) == (400, "This is no address of a page: Invalid IPv6 URL\n")
+    assert capsys.readouterr().err == ""
