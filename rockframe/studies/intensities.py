@@ -114,7 +114,7 @@ def recorded_period(period: Periods) -> dict[str, Any]:
     return {PERIOD_ATTRIBUTE: np.array(period) if isinstance(period, tuple) else period}
 
 
-_SPECTRAL_AT_PERIOD: Final = re.compile(r"(?i)(sa)\W*([\d.]*).*[])]")
+_SPECTRAL_AT_PERIOD: Final = re.compile(r"(?i)sa *[[(] *([\d.]*).*[])]")
 """A spectral acceleration as other programs write it: ``Sa(1.0)``, ``SA[T1]``."""
 
 
@@ -124,7 +124,7 @@ def _check_no_period(name: object, owner: str) -> None:
     if found is not None:
         msg = (
             f"{owner}: intensity {name!r} contains a period; write intensity='SA', "
-            f"period='{found[2] or '0.5'} s'"
+            f"period='{found[1] or '0.5'} s'"
         )
         raise ComponentError(msg)
 
