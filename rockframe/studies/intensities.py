@@ -114,7 +114,7 @@ def recorded_period(period: Periods) -> dict[str, Any]:
     return {PERIOD_ATTRIBUTE: np.array(period) if isinstance(period, tuple) else period}
 
 
-_SPECTRAL_AT_PERIOD: Final = re.compile(r"(?i)sa *[[(] *([\d.]*).*[])]")
+_SPECTRAL_AT_PERIOD: Final = re.compile(r"(?i)sa *[(\[] *([\d.]*).*[)\]]")
 """A spectral acceleration as other programs write it: ``Sa(1.0)``, ``SA[T1]``."""
 
 
