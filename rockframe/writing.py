@@ -91,6 +91,9 @@ def write_file(
         if target.exists():
             shutil.copymode(target, part)
         part.replace(target)
+    except UnicodeEncodeError as problem:  # netCDF needs names of characters
+        words = f"its name cannot be written as {problem.encoding}; name a file in another folder"
+        raise FileError(os.fspath(path), words) from problem
     except OSError as problem:
         words = f"it cannot be written ({problem.strerror or problem})"
         raise FileError(os.fspath(path), words) from problem

@@ -19,7 +19,7 @@ from rockframe.command.parser import (
     rewrite_for_command_line,
     unknown_word_message,
 )
-from rockframe.command.streams import StandardInput, print_message
+from rockframe.command.streams import StandardInput, print_message, replace_closed_streams
 from rockframe.errors import RockframeError, RockframeWarning, SolverError
 
 if TYPE_CHECKING:
@@ -34,6 +34,7 @@ def main(values: Sequence[str] | None = None) -> int:
     """Run the command line, and give its exit code."""
     typed = list(sys.argv[1:] if values is None else values)
     StandardInput.read_as = ""
+    replace_closed_streams()
     problem = unknown_word_message(typed)
     if problem is not None:
         program, _, words = problem.partition(": ")
@@ -111,8 +112,6 @@ def _run_command(arguments: Namespace, program: str, interrupts: list[int]) -> i
 def _print_answer(answer: "Answer", code: int, error: str, program: str) -> bool:
     """Print the results of a command; false where they could not be written."""
     text = answer.as_json_text(code, error) if answer.as_json else answer.as_text(error)
-    if sys.stdout is None:  # closed before the command began
-        return True
     try:
         if answer.data is not None:  # the file takes the standard output, so text goes to the other
             sys.stdout.buffer.write(answer.data)

@@ -8,7 +8,6 @@ from typing import Any, Final, NoReturn
 from rockframe.command.arguments import COMMON_OPTIONS, Command
 from rockframe.command.commands import COMMANDS
 from rockframe.command.streams import STREAM
-from rockframe.errors import did_you_mean
 from rockframe.shared_arguments import suggestion
 from rockframe.version import __version__
 
@@ -17,9 +16,11 @@ _HYPHENED_VALUE: Final = re.compile(r"-[\d.]|-.* ")
 _KEYWORD_EXAMPLE: Final = re.compile(r"\b(\w+)=(?:'([^']*)'|\(([^()]*)\))")
 _FUNCTION_PREFIX: Final = re.compile(
     r"^(case|critical_scale|fragility|incremental_dynamic_analysis|overturning_map|report|sweep|"
-    r"simulate|rf\.plot\.\w+): "
+    r"simulate|serve|rf\.plot\.\w+): "
 )
 """Names of functions at the head of messages, which do not help on the command line."""
+_PYTHON_HINT: Final = re.compile(r"; suite\.\w+ lists all")
+"""Where Python holds what a message does not list, of which the command line has nothing."""
 _SCENE_ARGUMENT: Final = "scene"
 """Argument of the commands that read the file of a scene."""
 _INVALID_CHOICE: Final = re.compile(r"invalid choice: '(.*?)'")
@@ -92,7 +93,7 @@ def unknown_word_message(typed: Sequence[str]) -> str | None:
     if unknown:
         return _unknown_option_message(unknown[0].split("=")[0], None, _options(None))
     if first is not None and first not in known:
-        proposal = did_you_mean(first, known)
+        proposal = suggestion(first, known)
         listed = ", ".join(known)
         return f"rockframe: invalid choice: {first!r} is no command{proposal} There are {listed}"
     command = None if first is None else known[first]
@@ -117,7 +118,7 @@ def rewrite_for_command_line(words: str, name: str) -> str:
         value = f"'{match[2]}'" if match[3] is None else match[3].replace(",", "")
         return f"{option} {value}" if option in options else match[0]
 
-    words = _KEYWORD_EXAMPLE.sub(typed, _FUNCTION_PREFIX.sub("", words))
+    words = _KEYWORD_EXAMPLE.sub(typed, _FUNCTION_PREFIX.sub("", _PYTHON_HINT.sub("", words)))
     if not any(_SCENE_ARGUMENT in argument.names for argument in command.arguments):
         return words
     from rockframe.command.files.tables import in_toml
@@ -139,18 +140,16 @@ def _is_option(word: str, options: Sequence[str]) -> bool:
 
 def _unknown_option_message(word: str, command: Command | None, options: Sequence[str]) -> str:
     program = "rockframe" if command is None else f"rockframe {command.name}"
-    names = {name[2:].replace("-", "_"): name for name in options if name.startswith("--")}
-    near = suggestion(word[2:].replace("-", "_"), names)
-    for name, option in names.items():
-        near = near.replace(repr(name), repr(option))
     also = [candidate.name for candidate in COMMANDS if word in _options(candidate)]
     if also:
-        advice = f"{', '.join(also)} {'takes' if len(also) == 1 else 'take'} it"
         place = "before the command" if command is None else "here"
-        return (
-            f"{program}: there is no option {word} {place}; {advice}. '{program} --help' lists all"
-        )
-    return f"{program}: there is no option {word}{near} '{program} --help' lists all"
+        verb = "takes" if len(also) == 1 else "take"
+        words = f" {place}; {', '.join(also)} {verb} it."
+    else:
+        names = [name[2:].replace("-", "_") for name in options if name.startswith("--")]
+        near = suggestion(word[2:].replace("-", "_"), names)
+        words = re.sub("'(.*?)'", lambda name: f"'--{name[1].replace('_', '-')}'", near)
+    return f"{program}: there is no option {word}{words} '{program} --help' lists all"
 
 
 class UsageError(Exception):

@@ -4,6 +4,7 @@ import os
 import shutil
 import sys
 from io import BytesIO
+from pathlib import Path
 from time import monotonic
 from typing import IO, Final
 
@@ -52,6 +53,18 @@ class StandardInput(BytesIO):
 def open_input(path: str, content: str) -> "str | IO[bytes]":
     """Return a path, or the standard input where it is ``-``."""
     return StandardInput.read_for(content) if path == STREAM else path
+
+
+def replace_closed_streams() -> None:
+    """Write nowhere instead of to closed streams: messages would go to the other stream or a file.
+
+    Python prints to the standard output where there is no standard error, and the next file that
+    is opened has the number of the closed stream, to which libraries write.
+    """
+    for name in ("stdout", "stderr"):
+        if getattr(sys, name) is None:
+            nowhere = Path(os.devnull).open("w", encoding="utf-8")  # noqa: SIM115 - kept open
+            setattr(sys, name, nowhere)
 
 
 def print_message(program: str, words: str, kind: str = "error") -> None:

@@ -37,3 +37,4 @@ from rockframe.compiled.language import view_from as view_from
 from rockframe.compiled.language import view_of as view_of
 from rockframe.compiled.language import widest_registers as widest_registers
 from rockframe.compiled.language import with_numbers as with_numbers
+from rockframe.compiled.parallel import processors as processors

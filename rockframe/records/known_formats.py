@@ -157,7 +157,7 @@ def format_by_name(name: str) -> Format:
             return entry
     names = [entry.name for entry in formats()]
     known, near = ", ".join(map(repr, names)), did_you_mean(name, names)
-    msg = f"GroundMotion.read: format must be one of {known}, got {short_repr(name)}{near}"
+    msg = f"the format of a record must be one of {known}, got {short_repr(name)}{near}"
     raise ComponentError(msg)
 
 

@@ -509,6 +509,8 @@ class System(metaclass=SuggestingMeta):
             return cls._described(json.loads(text), motion_from_dataset(dataset))
         except _DAMAGED as problem:
             reason = f"there is no {problem}" if isinstance(problem, KeyError) else problem
+            if isinstance(problem, json.JSONDecodeError):
+                reason = f"the JSON of system or motion is damaged ({problem})"
             msg = f"the dataset's attributes do not describe a system: {reason}"
             raise SchemaError(msg) from problem
 

@@ -1,6 +1,7 @@
 """Intensity measures of the motions of a sweep, and of a motion that is scaled."""
 
 import json
+import re
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any, Final, TypeAlias
@@ -113,6 +114,21 @@ def recorded_period(period: Periods) -> dict[str, Any]:
     return {PERIOD_ATTRIBUTE: np.array(period) if isinstance(period, tuple) else period}
 
 
+_SPECTRAL_AT_PERIOD: Final = re.compile(r"(?i)sa *[(\[] *([\d.]*).*[)\]]")
+"""A spectral acceleration as other programs write it: ``Sa(1.0)``, ``SA[T1]``."""
+
+
+def _check_no_period(name: object, owner: str) -> None:
+    """Refuse the name of a measure that contains its period."""
+    found = _SPECTRAL_AT_PERIOD.fullmatch(name) if isinstance(name, str) else None
+    if found is not None:
+        msg = (
+            f"{owner}: intensity {name!r} contains a period; write intensity='SA', "
+            f"period='{found[1] or '0.5'} s'"
+        )
+        raise ComponentError(msg)
+
+
 @dataclass(frozen=True)
 class Intensity:
     """An intensity measure."""
@@ -124,6 +140,7 @@ class Intensity:
     def read(cls, value: object, period: PeriodLike | None, *, owner: str) -> "Intensity":
         """Read the arguments ``intensity`` and ``period``."""
         value = measure_name(value)
+        _check_no_period(value, owner)
         name = checked_name(
             value, [*SCALE_EXPONENTS, *MEASURE_ABBREVIATIONS], owner=owner, name="intensity"
         )
@@ -331,6 +348,7 @@ class ScaledIntensity:
     ) -> None:
         self._motion, self._system = motion, system
         name = measure_name(checked_text(name, owner=owner, name="intensity"))
+        _check_no_period(name, owner)
         self._damping = to_ratio(damping_ratio, owner=owner, name="damping_ratio")
         spectral = name in OSCILLATORS
         if spectral != (period is not None):

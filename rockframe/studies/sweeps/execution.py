@@ -17,10 +17,11 @@ from functools import partial
 from threading import Event, Thread
 from typing import Any, Final, Protocol, runtime_checkable
 
+from rockframe.compiled import processors
 from rockframe.errors import ComponentError, RockframeError, StudyError, short_repr
 from rockframe.studies.sweeps.axes import OWNER, Chunk
 from rockframe.studies.sweeps.chunk import CaseResults, run_chunk
-from rockframe.studies.sweeps.study import SweepJob, worker_count
+from rockframe.studies.sweeps.study import SweepJob
 
 _DELAY: Final = 1.0
 """Least duration of work for which a bar is shown, unless one is requested [s]."""
@@ -134,7 +135,7 @@ _END: Final = Chunk(-1, range(0))
 def workers_of_executor(executor: Executor | None) -> int:
     """Return how many chunks an executor can run at once."""
     if executor is None:
-        return worker_count()
+        return processors()
     for name in ("_max_workers", "num_workers"):  # of Python's own, of joblib and of mpi4py
         workers = getattr(executor, name, None)
         if isinstance(workers, int) and workers > 0:
@@ -256,5 +257,5 @@ def _thread_pool() -> Generator[Executor]:
     except RuntimeError:  # as in a browser
         yield _InlineExecutor()
         return
-    with ThreadPoolExecutor(worker_count(), thread_name_prefix="rockframe") as pool:
+    with ThreadPoolExecutor(processors(), thread_name_prefix="rockframe") as pool:
         yield pool

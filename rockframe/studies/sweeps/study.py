@@ -1,6 +1,5 @@
 """A sweep that has been planned: all that its results depend on."""
 
-import os
 from collections import OrderedDict
 from collections.abc import Mapping
 from dataclasses import dataclass, field
@@ -9,7 +8,7 @@ from typing import Any, Final
 
 import numpy as np
 
-from rockframe.compiled import COMPILED
+from rockframe.compiled import COMPILED, processors
 from rockframe.errors import collected_warnings
 from rockframe.motion import GroundMotion
 from rockframe.signals.arrays import AnyArray
@@ -117,7 +116,7 @@ class Study:
         sampled = self.histories is not None or bool(self.arguments.points)
         if not COMPILED or sampled or self.grid.count < MIN_CASES_IN_LANES:
             return None
-        saved = (1.0 - LANE_TIME_RATIO) * self.grid.count * self._time_of_case() / worker_count()
+        saved = (1.0 - LANE_TIME_RATIO) * self.grid.count * self._time_of_case() / processors()
         return COMPILING_SHARE * saved
 
     def to_dict(self) -> dict[str, Any]:
@@ -213,10 +212,3 @@ def cache_study(study: Study) -> None:
 def cached_study(attributes: Mapping[str, Any]) -> Study | None:
     """Return the study of a dataset, if this process has made it."""
     return _cache.get(str(attributes.get("study_sha256")))
-
-
-def worker_count() -> int:
-    """Return the number of processors that this process may use."""
-    if hasattr(os, "sched_getaffinity"):
-        return len(os.sched_getaffinity(0))
-    return os.cpu_count() or 1

@@ -20,6 +20,7 @@ WORDS = {
     # commands and options
     "rnu scene.toml": "was 'run' meant?",
     "Run scene.toml": "'Run' is no command; was 'run' meant?",
+    "frobnicate": "'frobnicate' is no command. There are template, ",
     "critcal scene.toml": "was 'critical' meant?",
     "run scene.toml --outptu x.nc": "was '--output' meant?",
     "run scene.toml --Json": "was '--json' meant?",

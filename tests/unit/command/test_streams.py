@@ -16,7 +16,10 @@ import rockframe as rf
 from rockframe.command import streams
 from rockframe.command.commands import COMMANDS
 from rockframe.command.files.templates import TEMPLATES
+from rockframe.command.shared import RUN_KIND
+from rockframe.errors import FileError
 from rockframe.studies.sweeps import execution
+from rockframe.writing import write_file
 
 pytestmark = pytest.mark.unit
 
@@ -197,3 +200,33 @@ def test_every_command_takes_json(run_command):
     assert json.loads(run_command("describe", "scene.toml", "--json")[1])["model"] == "rigid ground"
     measures = json.loads(run_command("motion", "record.AT2", "--json")[1])["numbers"]
     assert measures["peak_ground_acceleration"]["value"] == [pytest.approx(4.0)]
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="a shell of POSIX closes the streams")
+@pytest.mark.parametrize("closed", ["1", "2"])
+def test_closed_streams_are_not_replaced_by_others(closed, uncompiled):
+    done = subprocess.run(
+        ["/bin/sh", "-c", f"exec {sys.executable} -m rockframe describe missing.toml {closed}>&-"],
+        capture_output=True, text=True, env=uncompiled, check=False,
+    )  # fmt: skip
+    message = "rockframe describe: missing.toml: there is no such file\n"
+    assert (done.returncode, done.stdout) == (2, "")
+    assert done.stderr == ("" if closed == "2" else message)
+
+
+@pytest.mark.skipif(sys.platform in ("win32", "darwin"), reason="names are text there")
+def test_netcdf_in_a_folder_whose_name_is_no_text(folder):
+    place = folder / os.fsdecode(b"Stra\xdfe")
+    place.mkdir()
+    with pytest.raises(FileError, match="its name cannot be written as utf-8"):
+        write_file(place / "out.nc", RUN_KIND, xr.Dataset().to_netcdf)
+    assert not [*place.iterdir()]
+
+
+def test_warnings_of_records_name_nothing_of_python(run_command, folder):
+    (folder / "records").mkdir()
+    rf.GroundMotion.sine_pulse("-4 m/s^2", "1 Hz").to_at2("records/one.AT2")
+    (folder / "records" / "broken.AT2").write_text("no record\n")
+    code, _, err = run_command("motion", "records")
+    assert (code, "1 file not read (broken.AT2: " in err) == (0, True)
+    assert "suite." not in err

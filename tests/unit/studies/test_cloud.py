@@ -256,6 +256,7 @@ def test_cloud_yields_annual_rates_and_writes_netcdf(base, tmp_path):
     [
         ({"limits": [-0.1]}, ComponentError, "limits must be greater than zero"),
         ({"limits": ["5 cm"], "response": "peak_rotation"}, UnitsError, "limits"),
+        ({"intensity": "SA[T1]"}, ComponentError, "write intensity='SA', period='0.5 s'"),
         ({"intensity": "strenght"}, ComponentError, "intensity must be one of"),
     ],
 )

@@ -227,6 +227,8 @@ def test_invalid_critical_scale_arguments_are_refused():
         ({"scales": 1}, ComponentError, "scales must be a whole number from 2"),
         ({"scales": 50, "runs": 40}, ComponentError, "runs must be a whole number from 50"),
         ({"bracket_width": 0.0}, ComponentError, "bracket_width must be from 1e-12 to 0.1"),
+        ({"intensity": "Sa(1.0)"}, ComponentError, r"write intensity='SA', period='1.0 s'"),
+        ({"intensity": "Sa_avg(0.2)"}, ComponentError, "must be one of"),
         ({"intensity": "PGX"}, ComponentError, "must be one of .*peak_ground_acceleration"),
         ({"intensity": "uplift_acceleration"}, ComponentError, "must be one of"),
         ({"intensity": "spectral_displacement"}, ComponentError, "needs a period"),

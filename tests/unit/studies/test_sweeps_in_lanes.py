@@ -265,7 +265,7 @@ def test_chunks_of_a_law_that_cannot_be_compiled_are_small(monkeypatch, fallback
 
     chunk_size = study.Study.chunk_size
     monkeypatch.setattr(study.Study, "chunk_size", size)
-    monkeypatch.setattr(study, "worker_count", lambda: 1)
+    monkeypatch.setattr(study, "processors", lambda: 1)
     for pads in (TabulatedPads(frequency_ratio=20, damping_ratio=0.1), PADS):
         for scene in (rf.System(BLOCK, pads), on(pads)):
             axes = {"slenderness": [4.0], "radius": ["4 m"]} if callable(scene) else {}
@@ -325,7 +325,7 @@ def test_lanes_are_compiled_only_if_they_save_time(monkeypatch):
         planned = plan_study(system, shaking, axes, None, **options)
         return planned.compile_timeout
 
-    monkeypatch.setattr(study, "worker_count", lambda: 2)
+    monkeypatch.setattr(study, "processors", lambda: 2)
     assert patience(15, accuracy="fast") is None
     assert patience(500, accuracy="standard", outputs=["rotation"]) is None
     assert patience(500, accuracy="fast") < 1.0

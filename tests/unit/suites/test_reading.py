@@ -206,7 +206,7 @@ def test_input_without_motions_is_refused(source, words, tmp_path, monkeypatch):
 def test_arguments_are_checked(folder):
     with pytest.raises(UnitsError, match="unit needs the unit of an acceleration, got 'm'"):
         rf.read_suite(folder, unit="m")
-    with pytest.raises(ComponentError, match=r"format must be one of .* got 'xls'"):
+    with pytest.raises(ComponentError, match=r"^the format of .* one of .* got 'xls'"):
         rf.read_suite(folder, format="xls")
     with pytest.raises(ComponentError, match="time_step must be greater than zero, got '0 s'"):
         rf.read_suite(folder, time_step="0 s")
