@@ -32,9 +32,9 @@ from rockframe.compiled.language import filled as filled
 from rockframe.compiled.language import inlined as inlined
 from rockframe.compiled.language import kernel as kernel
 from rockframe.compiled.language import lane_of as lane_of
+from rockframe.compiled.language import processors as processors
 from rockframe.compiled.language import put as put
 from rockframe.compiled.language import view_from as view_from
 from rockframe.compiled.language import view_of as view_of
 from rockframe.compiled.language import widest_registers as widest_registers
 from rockframe.compiled.language import with_numbers as with_numbers
-from rockframe.compiled.parallel import processors as processors

@@ -9,6 +9,7 @@ lane. A loop over all lanes that reads and writes only such an array is compiled
 several lanes at once.
 """
 
+import os
 from collections.abc import Callable
 from contextvars import ContextVar
 from typing import Annotated, Any, Final, TypeAlias, TypeVar
@@ -116,6 +117,13 @@ def as_integers(array: Vector) -> Integers:
 
 def widest_registers() -> None:
     """Let the calling function be compiled for the widest registers of the processor."""
+
+
+def processors() -> int:
+    """Return the number of processors that this process may use."""
+    if hasattr(os, "sched_getaffinity"):
+        return len(os.sched_getaffinity(0))
+    return os.cpu_count() or 1
 
 
 def tuple_from(structure: tuple[Any, ...]) -> Callable[[Vector], Any]:

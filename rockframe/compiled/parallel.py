@@ -11,7 +11,6 @@ need for the remaining jobs, this process compiles, too.
 
 import gc
 import logging
-import os
 import pickle
 import subprocess
 import sys
@@ -23,7 +22,12 @@ from typing import IO, Any, Final, cast
 
 from rockframe.compiled import store
 from rockframe.compiled.jobs import Job, estimate_seconds
-from rockframe.compiled.language import PURPOSE, PYTHON_SECONDS, REMAINING_SECONDS
+from rockframe.compiled.language import (
+    PURPOSE,
+    PYTHON_SECONDS,
+    REMAINING_SECONDS,
+    processors,
+)
 
 _logger = logging.getLogger("rockframe")
 _announced: Final[set[str]] = set()
@@ -217,13 +221,6 @@ def _jobs_in(description: bytes) -> list[Job]:
 def _description_of(job: Job) -> tuple[Any, ...]:
     function = job.function
     return function.__module__, function.__qualname__, job.structure, job.is_bound, job.in_lanes
-
-
-def processors() -> int:
-    """Return the number of processors that this process may use."""
-    if hasattr(os, "sched_getaffinity"):
-        return len(os.sched_getaffinity(0))
-    return os.cpu_count() or 1
 
 
 START_AFTER: Final = 0.25
