@@ -142,8 +142,8 @@ def bind(
 def _with_own_arrays(value: Any) -> Any:
     """Return a tuple with copies of the arrays in it and in the tuples in it."""
     if isinstance(value, tuple):
-        kind = type(cast("tuple[Any, ...]", value))
-        return kind(*map(_with_own_arrays, cast("tuple[Any, ...]", value)))
+        parts = map(_with_own_arrays, cast("tuple[Any, ...]", value))
+        return value._make(parts) if hasattr(value, "_make") else tuple(parts)  # type: ignore[attr-defined]
     return value.copy() if isinstance(value, np.ndarray) else value
 
 

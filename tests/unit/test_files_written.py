@@ -280,6 +280,7 @@ OWN_WRITERS = {
     "studies/sweeps/claims.py": "claims in that folder, which one job alone can make",
     "compiled/store.py": "machine code, in a folder of its own",
     "command/shared.py": "to the place that the mechanism gives",
+    "command/streams.py": "to the null device, in place of closed streams",
     "command/figures.py": "to memory, and by the methods of players and animations",
     "command/motions.py": "by the method of a motion",
     "reports/page.py": "to memory",

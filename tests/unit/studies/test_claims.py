@@ -230,7 +230,7 @@ def test_failing_job_releases_its_chunks(tmp_path):
             msg = "no more"
             raise RuntimeError(msg)
 
-    with Broken(2) as pool, pytest.raises(RuntimeError, match="no more"):
+    with Broken(2) as pool, pytest.raises(rf.errors.StudyError, match="no more"):
         run_sweep(tmp_path / "study", executor=pool)
     assert not [*(tmp_path / "study" / "claims").iterdir()]
     begun = time.monotonic()
