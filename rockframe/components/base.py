@@ -86,11 +86,7 @@ class Component(Immutable):
 
     def __init_subclass__(cls, **options: Any) -> None:
         super().__init_subclass__(**options)
-        own = {
-            name: parameter
-            for name, parameter in vars(cls).items()
-            if isinstance(parameter, Declared)
-        }
+        own = {name: value for name, value in vars(cls).items() if isinstance(value, Declared)}
         for name in own:
             if hasattr(Component, name):
                 msg = f"{cls.__qualname__}: {name!r} is reserved: every component has it"
@@ -418,9 +414,7 @@ COMPONENT_CLASSES: Final[dict[str, type[Component]]] = {}
 def _register(kind: type[Component]) -> None:
     """Make a class known by its name."""
     registered = COMPONENT_CLASSES.setdefault(kind.__name__, kind)
-    full, other = (
-        f"{component.__module__}.{component.__qualname__}" for component in (kind, registered)
-    )
+    full, other = (f"{part.__module__}.{part.__qualname__}" for part in (kind, registered))
     if full != other:
         msg = (
             f"{full}: another component has this name, {other}; descriptions refer to components "

@@ -140,8 +140,8 @@ def _has_unit(value: object) -> TypeGuard[tuple[object, str]]:
 
 def _unit_and_origin(unit: object) -> tuple[str, str]:
     """Divide the unit of times since a date, as UDUNITS writes it."""
-    one, _, origin = str(unit).partition(" since ")
-    return one, origin
+    spelling, _, origin = str(unit).partition(" since ")
+    return spelling, origin
 
 
 class TimeAxis(NamedTuple):
@@ -172,8 +172,8 @@ def attached_times(value: object) -> TimeAxis | None:
 
 def relative_seconds(axis: object) -> Array | None:
     """Convert an axis, in seconds or dates, to seconds from its first time; None for another."""
-    found = _time_axis(axis, "s")
-    return None if found is None else found.seconds
+    times = _time_axis(axis, "s")
+    return None if times is None else times.seconds
 
 
 def _time_axis(axis: object, unit: object) -> TimeAxis | None:
@@ -196,9 +196,9 @@ def _time_axis(axis: object, unit: object) -> TimeAxis | None:
         )
     if values.dtype.kind != "f":
         return None
-    one, origin = _unit_and_origin(unit)
+    spelling, origin = _unit_and_origin(unit)
     try:
-        scale = to_si(f"1 {one}", TIME, owner="relative_seconds", name="unit")
+        scale = to_si(f"1 {spelling}", TIME, owner="relative_seconds", name="unit")
     except UnitsError:  # such as numbers of samples
         return None
     seconds = (values - values[0]).astype(np.float64) * scale

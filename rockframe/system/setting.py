@@ -293,11 +293,11 @@ class Setting(ABC):
 
         Each thread has its own, as an array of the equations may hold a workspace.
         """
-        found: ContactModel | None = getattr(self._models, "of_thread", None)
-        if found is None:
-            found = replace(self.contact_model(), rotation_limits=self.overturning_angles)
-            self._models.of_thread = found
-        return found
+        model: ContactModel | None = getattr(self._models, "of_thread", None)
+        if model is None:
+            model = replace(self.contact_model(), rotation_limits=self.overturning_angles)
+            self._models.of_thread = model
+        return model
 
 
 _WIDTH: Final = 100
