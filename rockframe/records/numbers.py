@@ -362,13 +362,15 @@ def _text_and_seconds(time: object) -> tuple[str, float]:
     return match[1], float(match[3]) * (1.0 if match[2] == "plus" else -1.0)
 
 
-def uniform_step(times: Array, fields: Sequence[str]) -> tuple[float, int | None]:
+def uniform_step(
+    times: Array, fields: Sequence[str], precision: type[np.float32 | np.float64] = np.float64
+) -> tuple[float, int | None]:
     """Find the time step from which a column of times was printed.
 
     Times t_0 + k dt, each rounded to its last printed digit q, lie within q/2 of a straight line
     through the first, or, if the first was rounded, too, within q of one another. Further
-    deviations must be below 1e-6 dt. If q exceeds dt/2, no rounding is admitted, so that a missing
-    sample or a wrong last digit is found.
+    deviations must be below 1e-6 dt and a few roundings of `precision`. If q exceeds dt/2, no
+    rounding is admitted, so that a missing sample or a wrong last digit is found.
     """
     with np.errstate(over="ignore"):
         rises = np.diff(times)
@@ -382,7 +384,8 @@ def uniform_step(times: Array, fields: Sequence[str]) -> tuple[float, int | None
         return typical, None  # the step of no record in any unit; the caller refuses it
     digit = _last_digits(times, fields)
     digit = np.where(digit > _COARSEST_DIGIT * typical, 0.0, digit)
-    noise = _JITTER * typical + _FLOAT_ULPS * np.finfo(float).eps * float(np.max(np.abs(times)))
+    rounding = float(np.finfo(precision).eps) * float(np.max(np.abs(times)))
+    noise = _JITTER * typical + _FLOAT_ULPS * rounding
     count = np.arange(times.size)
     for within in (0.5 * _TIES * digit + noise, _TIES * digit + noise):
         lower = float(np.max((times[1:] - times[0] - within[1:]) / count[1:]))

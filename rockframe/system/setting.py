@@ -11,6 +11,7 @@ from threading import local
 from typing import TYPE_CHECKING, ClassVar, Final, NamedTuple, cast
 
 from rockframe.case_arrays import maximum
+from rockframe.constants import PAPER_TITLE
 from rockframe.dynamics.protocol import ContactModel, Ending
 from rockframe.signals.motion import Incline
 from rockframe.system.bodies import BaseLoad, OverturningAngles, SupportedBody
@@ -325,6 +326,7 @@ def describe(
             *words.numbers,
         ],
         "Left out": [("", ", ".join(words.left_out))],
+        "Numbers of equations": [("", f'as in "{PAPER_TITLE}"')],
     }
     lines = [line for title, rows in sections.items() for line in _section(title, rows)]
     return "\n".join([f"Model: {setting.model}", *lines])

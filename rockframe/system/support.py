@@ -280,12 +280,12 @@ class PadSupport(Support):
         return BaseWords(
             law="pad forces as in Eqs. (12) and (15)",
             equations=[
-                ("full", "Eq. (12), corrected: 2 zeta sin(a)/(beta omega) in (12a); sin(2a)/2, "
-                 "beta^2 omega^4/g and 2 zeta/(beta omega) in (12b)"),
+                ("full", "Eq. (12), corrected: 2 xi sin(a)/(beta omega) in (12a); sin(2a)/2, "
+                 "beta^2 omega^4/g and 2 xi/(beta omega) in (12b)"),
                 ("left", "Eq. (15), upper signs, corrected: [cos(theta) - cos(theta + a) + ...] in "
                  "(15a); the sign of the bearing corner and omega^4 in (15b)"),
                 ("right", "Eq. (15), lower signs, with the same corrections"),
-                ("flight", "free fall and constant rotation rate (left out by the paper)"),
+                ("flight", "free fall and constant rotation rate"),
                 ("impact", f"a landing corner keeps {self.restitution.words()} of its speed, "
                  "Eqs. (2)-(4) with the corner inertia for the printed I_O"),
             ],

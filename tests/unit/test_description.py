@@ -48,6 +48,7 @@ class TestDescription:
             "Eqs. (2)-(4)",
             "sliding",
             "tension",
+            "Winkler Foundation",
         ):
             assert word in text, word
         states = re.findall(r"^  (full|left|right|flight|impact) ", text, re.MULTILINE)
@@ -152,6 +153,7 @@ class TestDescription:
                 "Eqs. (2)-(4)",
                 "of the block on the cap and of the cap on the soil alike",
                 "tension",
+                "Winkler Foundation",
                 "yielding of the soil",
             ):
                 assert word in text, word

@@ -294,7 +294,9 @@ def _step(frame: Any, time: str | None, time_step: QuantityLike | None, owner: s
             raise ComponentError(msg)
         return requested
     printed = [repr(value) for value in cast("list[float]", times.tolist())]
-    step, misfit = uniform_step(times, printed)
+    stored = frame.index if time is None else frame[time]
+    precision = np.float32 if stored.dtype == np.float32 else np.float64
+    step, misfit = uniform_step(times, printed, precision)
     if misfit is not None:
         msg = (
             f"{owner}: the times are not even ({printed[misfit]} s after {printed[misfit - 1]} s); "

@@ -163,6 +163,17 @@ class TestFromFrame:
         assert motion.si.time_step == STEP
         assert (motion.metadata["component"], motion.metadata["azimuth"]) == ("E", 90.0)
 
+    @pytest.mark.parametrize("step", [0.005, 0.01, 1.0 / 128.0])
+    def test_times_of_single_precision(self, step):
+        times = (step * np.arange(60_000)).astype(np.float32)
+        frame = pd.DataFrame({"t": times, "N": np.zeros(times.size)})
+        assert GroundMotion.from_frame(frame, "gal", "N", time="t").si.time_step == step
+        indexed = frame.set_index("t")
+        assert GroundMotion.from_frame(indexed, "gal").si.time_step == step
+        frame["t"] = np.delete((step * np.arange(60_001)).astype(np.float32), 50_000)
+        with pytest.raises(ComponentError, match="not even"):
+            GroundMotion.from_frame(frame, "gal", "N", time="t")
+
     @pytest.mark.parametrize("entry", ["late", [1.0]])
     def test_a_column_of_times_holds_numbers_or_dates(self, entry):
         frame = pd.DataFrame({"t": [0.0, 0.01, entry], "N": [0.0, 1.0, 2.0]})
