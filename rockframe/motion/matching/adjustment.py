@@ -141,9 +141,8 @@ class Oscillators:
 
     def histories(self, samples: Array) -> Array:
         """Compute the pseudo-accelerations of all oscillators, from rest, also after the motion."""
-        from scipy import signal as module
+        from scipy import signal
 
-        signal: Any = module
         start, rise = self._lines(samples)
         histories = np.zeros((len(self._intervals), start.size + 1))
         for row, (interval, period) in enumerate(
@@ -272,9 +271,8 @@ class Adjustment(NamedTuple):
 
     def amplitudes(self, regularisation: float) -> Array:
         """Compute the amplitudes of all wavelets, :eq:`eq-matching-step`."""
-        from scipy import linalg as module
+        from scipy import linalg
 
-        linalg: Any = module
         weights = np.abs(self.misfits) + _MIN_WEIGHT
         weights = weights / np.sqrt((weights[self.greatest] ** 2).mean())
         weights[~self.greatest] = np.maximum(weights[~self.greatest], 1.0)
