@@ -21,7 +21,7 @@ from rockframe.errors import (
     warn,
 )
 from rockframe.motion.quantities import ArrayLike, accelerations_to_si, attached_times
-from rockframe.motion.value import UNNAMED, MotionType
+from rockframe.motion.value import UNNAMED, MotionType, replaced
 from rockframe.records import PathLike, Reading, RecordLike, read_record, request_of
 from rockframe.signals import Motion
 from rockframe.signals.arrays import Array
@@ -290,11 +290,12 @@ def example(
     file.name = record["file"]
     motion = read(kind, file, component=record["component"] if component is None else component)
     metadata: dict[str, Any] = record["metadata"]
-    return kind(
-        motion.si,
+    source = f"source: {metadata['attribution']}; {metadata['licence']}"
+    return replaced(
+        motion,
         name=record["name"],
         metadata={**motion.metadata, **metadata},
-        history=(*motion.history, f"source: {metadata['attribution']}; {metadata['licence']}"),
+        history=(*motion.history, source),
     )
 
 

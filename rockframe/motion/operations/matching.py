@@ -19,7 +19,7 @@ from rockframe.motion.matching.iteration import (
 )
 from rockframe.motion.operations.derived import derived_motion, dropped_pieces_note
 from rockframe.motion.processing.samples import time_step_for_period, warn_of_coarse_samples
-from rockframe.motion.value import MotionType
+from rockframe.motion.value import MotionType, replaced
 from rockframe.signals import Signal
 from rockframe.signals.arrays import Array
 from rockframe.signals.spectra import check_cost
@@ -162,13 +162,8 @@ def matched(
         )
         warn(msg, RecordWarning)
     if result.signal is si.horizontal:
-        return type(motion)(
-            si,
-            name=motion.name,
-            metadata={**motion.metadata, **added},
-            history=(*motion.history, words),
-            recipe=motion.recipe,
-        )
+        metadata, history = {**motion.metadata, **added}, (*motion.history, words)
+        return replaced(motion, metadata=metadata, history=history)
     across = replace(si, horizontal=result.signal)
     return derived_motion(motion, across, words, *dropped_pieces_note(si), metadata=added)
 
