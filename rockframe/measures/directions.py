@@ -22,12 +22,7 @@ from rockframe.motion.quantities import ArrayLike
 from rockframe.results.schema import build_dataset
 from rockframe.signals import Signal
 from rockframe.signals.arrays import Array
-from rockframe.signals.spectra import (
-    check_cost,
-    rotated_displacements,
-    rotated_peaks,
-    unit_vectors,
-)
+from rockframe.signals.spectra import check_cost, rotated_displacements, rotated_peaks, unit_vectors
 from rockframe.suggestions import with_hints
 from rockframe.units import QuantityLike, RatioLike
 
@@ -232,8 +227,7 @@ def _pairs(value: object, *, owner: str) -> Inputs[HorizontalPair]:
         if not isinstance(pair, HorizontalPair):
             msg = (
                 f"{owner}: {label!r} is {short_repr(pair)}, expected a HorizontalPair; those of a "
-                "suite "
-                "are suite.pairs"
+                "suite are suite.pairs"
             )
             raise ComponentError(msg)
     return Inputs(

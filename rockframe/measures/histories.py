@@ -5,11 +5,7 @@ from typing import Final
 import numpy as np
 import xarray as xr
 
-from rockframe.measures.common import (
-    build_over,
-    component_attributes,
-    signal_of,
-)
+from rockframe.measures.common import build_over, component_attributes, signal_of
 from rockframe.motion import GroundMotion
 from rockframe.motion.value import GroundComponent
 from rockframe.results.schema import build_dataset

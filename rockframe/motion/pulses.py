@@ -106,9 +106,7 @@ def type_c_phase(order: int) -> float:
     It is the root of :eq:`eq-type-c-phase` in (0, pi/2).
     """
     phase = 0.0
-    for _ in range(
-        _PHASE_ITERATIONS
-    ):  # each iteration reduces the error at least by a factor of 21
+    for _ in range(_PHASE_ITERATIONS):  # each reduces the error at least by a factor of 21
         phase = math.atan(1.0 / ((order + _HALF) * math.pi - phase))
     return phase
 

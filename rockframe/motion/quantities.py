@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import TYPE_CHECKING, Any, Final, NamedTuple, TypeAlias, TypeGuard, cast
+from typing import Any, Final, NamedTuple, TypeAlias, TypeGuard, cast
 
 import numpy as np
 import numpy.typing as npt
@@ -12,6 +12,7 @@ import xarray as xr
 
 from rockframe.errors import ComponentError, UnitsError, short_repr
 from rockframe.records import acceleration_unit
+from rockframe.signals.arrays import Array
 from rockframe.units import (
     ACCELERATION,
     TIME,
@@ -20,9 +21,6 @@ from rockframe.units import (
     foreign_quantity_hint,
     to_si,
 )
-
-if TYPE_CHECKING:
-    from rockframe.signals.arrays import Array
 
 ArrayLike: TypeAlias = Quantity | xr.DataArray | tuple[Sequence[float] | npt.NDArray[Any], str]
 

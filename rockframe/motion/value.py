@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from enum import StrEnum
+from functools import partial
 from types import MappingProxyType
 from typing import Any, Final, TypeVar
 
@@ -171,22 +172,19 @@ class MotionValue(Immutable):
         return hash(self.sha256)
 
     def __reduce__(self) -> tuple[Any, ...]:
-        recipe = None if self.recipe is None else dict(self.recipe)
-        return (
-            _rebuild,
-            (type(self), self.si, self.name, dict(self.metadata), self.history, recipe),
-        )
+        named = {
+            "name": self.name,
+            "metadata": dict(self.metadata),
+            "history": self.history,
+            "recipe": None if self.recipe is None else dict(self.recipe),
+        }
+        return partial(type(self), **named), (self.si,)
 
 
-def _rebuild(
-    kind: type[MotionType],
-    si: Motion,
-    name: str,
-    metadata: dict[str, str | float | int],
-    history: tuple[str, ...],
-    recipe: dict[str, Any] | None,
-) -> MotionType:
-    return kind(si, name=name, metadata=metadata, history=history, recipe=recipe)
+def replaced(motion: MotionType, **changes: Any) -> MotionType:
+    """Return a motion with other values of some of its attributes."""
+    values = {name: getattr(motion, name) for name in MotionValue.__slots__}
+    return type(motion)(**{**values, **changes})
 
 
 def _one_line(text: str) -> str:

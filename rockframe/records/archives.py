@@ -61,7 +61,7 @@ class ArchiveMember:
         return "__MACOSX" in parts or parts[-1].startswith(".")
 
 
-def is_archive(start: bytes) -> bool:
+def begins_like_archive(start: bytes) -> bool:
     """Tell whether a file begins like a zip or tar archive."""
     place, mark = _TAR
     return start.startswith(_ZIP) or start[place : place + len(mark)] == mark
@@ -72,18 +72,18 @@ def is_gzip(start: bytes) -> bool:
     return start.startswith(_GZIP)
 
 
-def is_compressed_tar(file: IO[bytes]) -> bool:
-    """Tell whether a file is a tar archive packed by gzip."""
-    start = file.read(len(_GZIP))
+def is_archive(file: IO[bytes]) -> bool:
+    """Tell whether a file is a zip or tar archive, also one that is packed by gzip."""
+    start = file.read(_START)
     file.seek(0)
-    if not is_gzip(start):
-        return False
-    try:
-        unpacked = gzip.GzipFile(fileobj=file).read(_START)
-    except Exception:  # damaged: unpacking raises the error
-        unpacked = b""
-    file.seek(0)
-    return is_archive(unpacked)
+    if is_gzip(start):
+        try:
+            start = gzip.GzipFile(fileobj=file).read(_START)
+        except Exception:  # damaged: unpacking raises the error
+            return False
+        finally:
+            file.seek(0)
+    return begins_like_archive(start)
 
 
 def check_unpackable(name: str, start: bytes) -> None:
@@ -98,7 +98,7 @@ def unpack_members(file: IO[bytes], name: str, size: int) -> Iterator[ArchiveMem
     budget = _Budget(name, MAX_EXPANSION * size + MAXIMUM_BYTES, MAX_MEMBERS)
     for member in _unpacked_members(file, name, budget):
         inner = member.data
-        if inner is None or not (is_archive(inner) or is_compressed_tar(io.BytesIO(inner))):
+        if inner is None or not is_archive(io.BytesIO(inner)):
             yield _check_not_packed(member)
             continue
         try:
@@ -112,7 +112,7 @@ def unpack_members(file: IO[bytes], name: str, size: int) -> Iterator[ArchiveMem
 
 def _check_not_packed(member: ArchiveMember) -> ArchiveMember:
     """Refuse a file that is itself packed."""
-    if member.data is not None and (is_archive(member.data) or is_gzip(member.data)):
+    if member.data is not None and (begins_like_archive(member.data) or is_gzip(member.data)):
         return ArchiveMember(member.name, None, _PACKED)
     return member
 

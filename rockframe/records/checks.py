@@ -161,25 +161,6 @@ class StatedValue(NamedTuple):
     line: int  # line number from 1
 
 
-def header_mismatch_warnings(
-    source: Source,
-    samples: Array,
-    unit: RecordUnit,
-    time_step: float,
-    stated: Iterable[StatedValue],
-) -> list[str]:
-    """Compare the peaks and lengths that a header states with the samples."""
-    return [
-        words
-        for value in stated
-        for words in (
-            _compare_length(source, samples.size, time_step, value)
-            if value.unit == LENGTH
-            else _compare_peak(source, samples, unit, value)
-        )
-    ]
-
-
 def _compare_peak(
     source: Source, samples: Array, unit: RecordUnit, stated: StatedValue
 ) -> list[str]:
@@ -306,7 +287,12 @@ def make_record(
             source, declared=declared, counted=values.size, what=what, line=line
         )
         warnings = [*warnings, *differing]
-    mismatches = header_mismatch_warnings(source, values, unit, time_step, stated)
+    mismatches: list[str] = []
+    for value in stated:
+        if value.unit == LENGTH:
+            mismatches += _compare_length(source, values.size, time_step, value)
+        else:
+            mismatches += _compare_peak(source, values, unit, value)
     described: Metadata = {**metadata, "unit_as_read": as_read, **counts}
     return Record(
         time_step,

@@ -17,15 +17,6 @@ DOWNWARDS: Final = "down"
 VERTICAL: Final = "vertical"
 
 _FULL_CIRCLE: Final = 360.0
-_COMPASS: Final = {
-    **dict.fromkeys(("n", "ns", "n-s", "sn", "north"), 0.0),
-    **dict.fromkeys(("e", "ew", "e-w", "we", "east"), 90.0),
-    **dict.fromkeys(("s", "south"), 180.0),
-    **dict.fromkeys(("w", "west"), 270.0),
-}
-_UPWARDS: Final = frozenset(("u", "up", "ud", "u-d", "updo", "updn", "updown", "up-down", "z"))
-_DOWNWARDS: Final = frozenset(("d", "down", "dwn", "dn"))
-_VERTICAL: Final = frozenset(("v", "vert", "ver", "vertical", "vrt"))
 _DEGREES: Final = re.compile(r"(\d{1,3}(?:\.\d{0,3})?)\s*(?:deg(?:rees?)?\.?)?", re.ASCII)
 _QUADRANT: Final = re.compile(r"([ns])\s*(\d{1,2})\s*([ew])", re.ASCII)
 # band code, N for an accelerometer (or L, G, H: a mass or a seismometer), orientation; in some
@@ -64,6 +55,19 @@ class Orientation:
 
 
 UNKNOWN: Final = Orientation()
+_WORDS: Final = {
+    **dict.fromkeys(("n", "ns", "n-s", "sn", "north"), Orientation(azimuth=0.0)),
+    **dict.fromkeys(("e", "ew", "e-w", "we", "east"), Orientation(azimuth=90.0)),
+    **dict.fromkeys(("s", "south"), Orientation(azimuth=180.0)),
+    **dict.fromkeys(("w", "west"), Orientation(azimuth=270.0)),
+    **dict.fromkeys(
+        ("u", "up", "ud", "u-d", "updo", "updn", "updown", "up-down", "z"),
+        Orientation(vertical=UPWARDS),
+    ),
+    **dict.fromkeys(("d", "down", "dwn", "dn"), Orientation(vertical=DOWNWARDS)),
+    **dict.fromkeys(("v", "vert", "ver", "vertical", "vrt"), Orientation(vertical=VERTICAL)),
+}
+"""Directions by the words and letters for them."""
 
 
 def orientation_of(name: str) -> Orientation:
@@ -91,14 +95,8 @@ def orientation_of(name: str) -> Orientation:
     (196.0, 'up')
     """
     text = name.strip().casefold()
-    if text in _COMPASS:
-        return Orientation(azimuth=_COMPASS[text])
-    if text in _UPWARDS:
-        return Orientation(vertical=UPWARDS)
-    if text in _DOWNWARDS:
-        return Orientation(vertical=DOWNWARDS)
-    if text in _VERTICAL:
-        return Orientation(vertical=VERTICAL)
+    if text in _WORDS:
+        return _WORDS[text]
     degrees = _DEGREES.fullmatch(text)
     if degrees is not None:
         return azimuth_of(float(degrees.group(1)))
@@ -112,11 +110,11 @@ def orientation_of(name: str) -> Orientation:
         return orientation_of(seed.group(1))
     numbered = _NUMBERED.fullmatch(text)
     base = text.lstrip("-").strip() if numbered is None else numbered.group(1)
-    if base in _UPWARDS | _VERTICAL and base != text:
-        # a hyphen before the name separates it from another name, or reverses the direction
-        upwards = base in _UPWARDS and not text.startswith("-")
-        return Orientation(vertical=UPWARDS if upwards else VERTICAL)
-    return UNKNOWN
+    named = _WORDS.get(base, UNKNOWN)
+    if named.vertical not in (UPWARDS, VERTICAL):
+        return UNKNOWN
+    # a hyphen before the name separates it from another name, or reverses the direction
+    return Orientation(vertical=VERTICAL) if text.startswith("-") else named
 
 
 def azimuth_of(degrees: float) -> Orientation:

@@ -45,12 +45,7 @@ from rockframe.records.checks import (
     surplus_rows_warning,
     truncation_warning,
 )
-from rockframe.records.components import (
-    FileComponent,
-    Orientation,
-    choose_component,
-    orientation_of,
-)
+from rockframe.records.components import FileComponent, choose_component, orientation_of
 from rockframe.records.headers import first_match, without_empty_values
 from rockframe.records.numbers import FixedWidth, integer_or_none, number_or_none, uniform_step
 from rockframe.records.reader import (
@@ -281,7 +276,6 @@ _INTERVAL: Final = re.compile(r"EQUALLY-SPACED INTERVALS OF\s+([\d.]{1,12})\s+SE
 _MAX_HEADER_LINES: Final = 200
 _MAX_CHANNELS: Final = 500
 _SECOND_LINE: Final = 10  # lines in which a first line may be followed by a second of its kind
-_SUCH_AS: Final = "a line such as '1138 points of accel data equally spaced at .020 sec'"
 _PER_LINE: Final = 8
 _WIDTHS: Final = range(7, 16)
 
@@ -308,19 +302,10 @@ def _read(source: Source, request: Request) -> Record:
     if _SPECTRA.match(source.top(1)[0]):
         found = "response spectra (volume 3)"
         raise source.refuse(found=found, expected="an acceleration (volume 1 or 2)", line=1)
-    components = _components(source, request)
-    if not components:
-        found = f"no evenly sampled accelerations below {quoted_first_line(source.start)}"
-        raise source.refuse(found=found, expected=_SUCH_AS, line=1)
-    return choose_component(source, request, components)
-
-
-def _components(source: Source, request: Request) -> list[FileComponent]:
-    """Find the channels, also those without data, whose reading raises an error."""
     blocks = _blocks(source)
     cut = _ends_inside(source)
     components: list[FileComponent] = []
-    has_data = False
+    empty = 0
     for first, end in pairwise(_starts(source, blocks)):
         held = [block for block in blocks if first <= block.line < end]
         pairs = None if blocks else find_pairs(source, first, end)
@@ -330,11 +315,12 @@ def _components(source: Source, request: Request) -> list[FileComponent]:
         if pairs is not None:
             components.append(_component_of_pairs(source, request, first, pairs))
         elif not held:
+            empty += 1
             components.append(_without_data(source, first, end))
-        has_data = has_data or bool(held) or pairs is not None
-        if len(components) > _MAX_CHANNELS:
-            raise _too_many(source, first + 1)
-    return components if has_data else []
+        _check_number(source, len(components), first + 1)
+    if empty == len(components):
+        raise _no_data_error(source, source.start, 1)
+    return choose_component(source, request, components)
 
 
 def _ends_inside(source: Source) -> list[str]:
@@ -345,9 +331,8 @@ def _ends_inside(source: Source) -> list[str]:
         if match is not None:
             layout = _LAYOUT.search(text)
             per_line = _PER_LINE if layout is None else max(int(layout.group(1)), 1)
-            return truncation_warning(
-                source, line, FixedWidth(1, per_line).rows(int(match.group(1)))
-            )
+            rows = FixedWidth(1, per_line).rows(int(match.group(1)))
+            return truncation_warning(source, line, rows)
     return []
 
 
@@ -365,13 +350,18 @@ def _starts(source: Source, blocks: list[_Block]) -> list[int]:
 
 
 def _without_data(source: Source, first: int, end: int) -> FileComponent:
-    """Return a channel that has only a header."""
+    """Return a channel that has only a header, and whose reading raises an error."""
 
     def samples() -> Record:
-        found = f"no evenly sampled accelerations below {quoted_first_line(source.lines[first])}"
-        raise source.refuse(found=found, expected=_SUCH_AS, line=first + 1)
+        raise _no_data_error(source, source.lines[first], first + 1)
 
     return _named(source.top(min(end - first, _MAX_HEADER_LINES), first), first, samples)
+
+
+def _no_data_error(source: Source, text: str, line: int) -> RecordError:
+    found = f"no evenly sampled accelerations below {quoted_first_line(text)}"
+    expected = "a line such as '1138 points of accel data equally spaced at .020 sec'"
+    return source.refuse(found=found, expected=expected, line=line)
 
 
 def _blocks(source: Source) -> list[_Block]:
@@ -390,14 +380,14 @@ def _blocks(source: Source) -> list[_Block]:
             count, interval, rate = match.groups()
             blocks.append(_Block(start, header, index, int(count), interval or "", rate or ""))
             first = index + 1
-        if len(blocks) > _MAX_CHANNELS:
-            raise _too_many(source, index + 1)
+        _check_number(source, len(blocks), index + 1)
     return blocks
 
 
-def _too_many(source: Source, line: int) -> RecordError:
-    expected = f"at most {_MAX_CHANNELS} channels"
-    return source.refuse(found="more channels", expected=expected, line=line)
+def _check_number(source: Source, channels: int, line: int) -> None:
+    if channels > _MAX_CHANNELS:
+        expected = f"at most {_MAX_CHANNELS} channels"
+        raise source.refuse(found="more channels", expected=expected, line=line)
 
 
 def _named(header: list[str], first: int, samples: Callable[[], Record]) -> FileComponent:
@@ -405,7 +395,7 @@ def _named(header: list[str], first: int, samples: Callable[[], Record]) -> File
     return FileComponent(
         name or (None if channel is None else f"channel {channel}"),
         samples,
-        orientation_of(name) if name else Orientation(),
+        orientation_of(name),
         channel=channel,
         line=line,
     )
@@ -424,17 +414,10 @@ def _samples(source: Source, request: Request, block: _Block, cut: list[str]) ->
     check_requested_time_step(source, request, time_step, line)
     layout = _layout(source, block, text)
     values = layout.read(source, line, block.count)
+    surplus = [*surplus_rows_warning(source, line + layout.rows(block.count), f"line {line}"), *cut]
+    stated, metadata = _stated(block.header, block.first), description(block.header)
     return make_record(
-        source,
-        values,
-        time_step,
-        chosen,
-        description(block.header),
-        stated=_stated(block.header, block.first),
-        warnings_after=[
-            *surplus_rows_warning(source, line + layout.rows(block.count), f"line {line}"),
-            *cut,
-        ],
+        source, values, time_step, chosen, metadata, stated=stated, warnings_after=surplus
     )
 
 

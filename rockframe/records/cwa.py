@@ -15,7 +15,7 @@ Reference: the header of the files itself; the columns follow ``#DataSequence``.
 """
 
 import re
-from functools import cache
+from functools import cache, partial
 from typing import Final
 
 import numpy as np
@@ -79,19 +79,16 @@ def _read(source: Source, request: Request) -> Record:
     if named is not None and "dcoffset(corr)" in named.group(2).casefold().replace(" ", ""):
         metadata["baseline_correction"] = named.group(2).strip(" .")
 
-    @cache
-    def table() -> tuple[Array, tuple[int, str, int] | None]:
-        values = _table(source, header, first, len(columns) + 1, rate)
-        return values, _announced(source, header, rate)
+    table = cache(partial(_table, source, header, first, len(columns) + 1, rate))
 
     def samples(place: int) -> Record:
-        values, count = table()
-        column = values[:, place].copy()
+        values = table()[:, place].copy()
+        count = _announced(source, header, rate)
         stated = _stated_peak(source, columns[place - 1][0], chosen[1])
-        return make_record(source, column, 1.0 / rate, chosen, metadata, count=count, stated=stated)
+        return make_record(source, values, 1.0 / rate, chosen, metadata, count=count, stated=stated)
 
     components = [
-        FileComponent(name, lambda place=place: samples(place), direction, line=columns_line)
+        FileComponent(name, partial(samples, place), direction, line=columns_line)
         for place, (name, direction) in enumerate(columns, start=1)
     ]
     return choose_component(source, request, components)

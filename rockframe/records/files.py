@@ -12,9 +12,9 @@ from rockframe.arguments import is_iterable
 from rockframe.errors import RecordError, short_repr
 from rockframe.records.archives import (
     MAXIMUM_BYTES,
+    begins_like_archive,
     check_unpackable,
     is_archive,
-    is_compressed_tar,
     is_gzip,
     unpack_members,
 )
@@ -33,7 +33,7 @@ def read_source(given: RecordLike) -> Source:
     """Read the bytes of one record file, and unpack them if needed."""
     name, data = name_and_bytes(given)
     check_unpackable(name, data)
-    if is_archive(data) or is_compressed_tar(io.BytesIO(data)):
+    if is_archive(io.BytesIO(data)):
         name, data = _only_member(name, data)
     elif is_gzip(data):
         base = base_name(name)
@@ -71,7 +71,7 @@ def decompressed(name: str, data: bytes) -> bytes:
         found = f"a gzip file that cannot be unpacked ({type(problem).__name__})"
         raise RecordError(name, found=found, expected="a record file") from problem
     check_size(name, len(unpacked), MAXIMUM_BYTES)
-    if is_archive(unpacked) or is_gzip(unpacked):
+    if begins_like_archive(unpacked) or is_gzip(unpacked):
         found = "a file that is packed twice"
         raise RecordError(name, found=found, expected="a record file")
     return unpacked
@@ -144,8 +144,6 @@ def _no_name(value: object) -> RecordError:
 MAX_FILES: Final = 20_000
 """Most files in a folder."""
 
-_START: Final = 512
-
 
 @dataclass(frozen=True)
 class Unread:
@@ -202,9 +200,7 @@ def _files_in_folder(folder: Path) -> Iterator[Source | Unread]:
 def _files_at_path(path: Path) -> Iterator[Source | Unread]:
     try:
         with path.open("rb") as file:
-            start = file.read(_START)
-            file.seek(0)
-            if is_archive(start) or is_compressed_tar(file):
+            if is_archive(file):
                 yield from _files_in_archive(file, str(path), path.stat().st_size)
                 return
         yield read_source(path)
@@ -218,13 +214,13 @@ def _files_in_open_file(file: IO[bytes], name: str) -> Iterator[Source | Unread]
     try:
         size = file.seek(0, 2)
         file.seek(0)
-        start: Any = file.read(_START)
-        file.seek(0)
+        nothing: Any = file.read(0)  # a text where the file is open as text
+        packed = isinstance(nothing, bytes) and is_archive(file)
     except (OSError, ValueError, AttributeError) as problem:
         found = f"an open file that cannot be read from its start ({problem})"
         raise RecordError(name, found=found, expected="a file open for reading") from problem
     try:
-        if isinstance(start, bytes) and (is_archive(start) or is_compressed_tar(file)):
+        if packed:
             yield from _files_in_archive(file, name, size)
         else:
             yield read_source(file)

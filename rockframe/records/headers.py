@@ -33,10 +33,10 @@ def read_keys(lines: Iterable[str]) -> Keys:
     return keys
 
 
-def required_count(source: Source, keys: Keys, key: str) -> tuple[int, int]:
-    """Return a required number of samples, above zero, and its line."""
+def required_count(source: Source, keys: Keys, key: str) -> tuple[int, str, int]:
+    """Return a required number of samples, above zero, with its key and line."""
     text, line = required_value(source, keys, key)
-    return whole_number(source, text, f"{key} {quoted_first_line(text)}", line), line
+    return whole_number(source, text, f"{key} {quoted_first_line(text)}", line), key, line
 
 
 def whole_number(source: Source, text: str, found: str, line: int) -> int:

@@ -7,7 +7,7 @@ ASCII format ``HEADER_FORMAT: DYNA 1.2``; for the others, the headers of the fil
 """
 
 import re
-from functools import cache
+from functools import cache, partial
 from typing import Final
 
 from rockframe.records.checks import (
@@ -89,7 +89,7 @@ def _read_esm(source: Source, request: Request) -> Record:
     time_step = required_step(source, request, header, "SAMPLING_INTERVAL_S")
     unit_name, unit_line = header.get("UNITS", MISSING_KEY)
     chosen = choose_unit(source, request, unit_name or None, unit_line or None)
-    declared, count_line = required_count(source, header, "NDATA")
+    count = required_count(source, header, "NDATA")
     metadata = renamed_keys(header, _ESM_METADATA)
     day, clock = (
         value_or_empty(header, f"EVENT_{key}") for key in ("DATE_YYYYMMDD", "TIME_HHMMSS")
@@ -101,8 +101,7 @@ def _read_esm(source: Source, request: Request) -> Record:
     length, length_line = header.get("DURATION_S", MISSING_KEY)
 
     def samples() -> Record:
-        values = all_numbers(source, first, of=declared)
-        count = (declared, "NDATA", count_line)
+        values = all_numbers(source, first, of=count[0])
         stated = (
             StatedValue(peak, _ESM_PEAK_UNIT, peak_line),
             StatedValue(length, LENGTH, length_line),
@@ -165,7 +164,7 @@ def _is_resorce(source: Source) -> bool:
 def _read_resorce(source: Source, request: Request) -> Record:
     header = read_keys(source.top(_MAX_HEADER_LINES))
     time_step = required_step(source, request, header, _RESORCE_STEP)
-    count, _ = required_count(source, header, _RESORCE_COUNT)
+    count, *_ = required_count(source, header, _RESORCE_COUNT)
     series = first_match(_SERIES, source.top(_MAX_HEADER_LINES))
     if series is None:
         found = f"no line with the unit below {quoted_first_line(source.start)}"
@@ -237,7 +236,7 @@ def _is_afad(source: Source) -> bool:
 def _read_afad(source: Source, request: Request) -> Record:
     header = read_keys(source.top(_MAX_HEADER_LINES))
     time_step = required_step(source, request, header, _AFAD_STEP)
-    declared, count_line = required_count(source, header, _AFAD_COUNT)
+    count = required_count(source, header, _AFAD_COUNT)
     names, first = _afad_columns(source)
     peaks, unit_name, peaks_line = _afad_peaks(header)
     chosen = choose_unit(source, request, unit_name, peaks_line)
@@ -245,18 +244,15 @@ def _read_afad(source: Source, request: Request) -> Record:
     if "event_time" in metadata:
         metadata["event"] = f"earthquake of {metadata['event_time']}"
 
-    @cache
-    def table() -> Array:
-        return _afad_table(source, first, len(names))
+    table = cache(partial(_afad_table, source, first, len(names)))
 
     def samples(place: int) -> Record:
         values = table()[:, place].copy()
-        count = (declared, _AFAD_COUNT, count_line)
         stated = [StatedValue(peaks.get(names[place], ""), unit_name or "", peaks_line or 1)]
         return make_record(source, values, time_step, chosen, metadata, count=count, stated=stated)
 
     components = [
-        FileComponent(name, lambda place=place: samples(place), orientation_of(name), line=first)
+        FileComponent(name, partial(samples, place), orientation_of(name), line=first)
         for place, name in enumerate(names)
     ]
     return choose_component(source, request, components)

@@ -2,7 +2,6 @@
 
 import inspect
 import re
-from dataclasses import replace
 from typing import Any, Final, cast
 
 from rockframe.errors import ComponentError, RecordError, did_you_mean, short_repr
@@ -27,15 +26,11 @@ _SUFFIX: Final = re.compile(r"\.[a-z0-9]+")
 _OWNER: Final = "rockframe.motion.register"
 
 # tried in this order; text accepts any column of numbers, so it is last
-_BUILT_IN: Final = tuple(
-    replace(entry, own=True)
-    for entry in (
-        *(PEER_AT2, COSMOS, CSMIP, SMC, ESM, KNET, GEONET, CWA),
-        *(AFAD, BHRC, CSMNC, RESORCE, UNAM),
-        *(ASDF, NETCDF, MINISEED, SAC),
-    )
+_BUILT_IN: Final = (
+    *(PEER_AT2, COSMOS, CSMIP, SMC, ESM, KNET, GEONET, CWA),
+    *(AFAD, BHRC, CSMNC, RESORCE, UNAM),
+    *(ASDF, NETCDF, MINISEED, SAC),
 )
-_PLAIN_TEXT: Final = replace(TEXT, own=True)
 WITH_RESPONSE: Final = (MINISEED.name, SAC.name, ASDF.name)
 """Formats that may have counts, which the response of the instrument converts to accelerations."""
 _registered: list[Format] = []
@@ -55,7 +50,7 @@ def formats() -> tuple[Format, ...]:
     >>> [entry.name for entry in formats()][:3]
     ['peer-at2', 'cosmos', 'csmip']
     """
-    return (*_BUILT_IN, *_registered, _PLAIN_TEXT)
+    return (*_BUILT_IN, *_registered, TEXT)
 
 
 def register(reader: Reader) -> None:
@@ -106,9 +101,9 @@ def register(reader: Reader) -> None:
         msg = f"{_OWNER}: the format {reader.NAME!r} exists already; unregister it or rename yours"
         raise ComponentError(msg)
     binary = bool(getattr(reader, "BINARY", False))
-    suffixes = tuple(reader.SUFFIXES)
+    functions = reader.recognises, reader.read
     _registered.append(
-        Format(reader.NAME, reader.TITLE, suffixes, reader.recognises, reader.read, binary=binary)
+        Format(reader.NAME, reader.TITLE, reader.SUFFIXES, *functions, binary=binary, own=False)
     )
 
 

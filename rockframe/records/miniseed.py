@@ -27,12 +27,7 @@ import numpy as np
 
 from rockframe.errors import RecordError
 from rockframe.records.checks import check_time_step, checked_time_step
-from rockframe.records.components import (
-    UNKNOWN,
-    FileComponent,
-    choose_component,
-    orientation_of,
-)
+from rockframe.records.components import UNKNOWN, FileComponent, choose_component, orientation_of
 from rockframe.records.instruments import (
     InstrumentResponses,
     check_finite,

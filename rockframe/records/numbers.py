@@ -428,16 +428,12 @@ def _last_digits(times: Array, fields: Sequence[str]) -> Array:
     # With a fixed number of decimals all times have the same last digit; with a fixed number of
     # significant digits it grows with the time.
     decimals, significant = -400, 1
-    if any("e" in field or "E" in field or "d" in field or "D" in field for field in fields):
-        for field in fields:
-            mantissa, _, exponent = field.upper().replace("D", "E").partition("E")
-            # a longer exponent is that of a zero, whose digits have no meaning
-            power = int(exponent) if 0 < len(exponent) <= _MAX_EXPONENT_LENGTH else 0
-            decimals = max(decimals, len(mantissa.partition(".")[2]) - power)
-            significant = max(significant, len(mantissa.replace(".", "").lstrip("+-0")))
-    else:
-        decimals = max(len(field.partition(".")[2]) for field in fields)
-        significant = max(1, *(len(field.replace(".", "").lstrip("+-0")) for field in fields))
+    for field in fields:
+        mantissa, _, exponent = field.upper().replace("D", "E").partition("E")
+        # a longer exponent is that of a zero, whose digits have no meaning
+        power = int(exponent) if 0 < len(exponent) <= _MAX_EXPONENT_LENGTH else 0
+        decimals = max(decimals, len(mantissa.partition(".")[2]) - power)
+        significant = max(significant, len(mantissa.replace(".", "").lstrip("+-0")))
     size = np.abs(times)
     leading = np.floor(np.log10(np.where(size > 0.0, size, 1.0))) + 1.0 - significant
     return 10.0 ** np.where(size > 0.0, np.maximum(-decimals, leading), -float(decimals))

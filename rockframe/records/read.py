@@ -152,17 +152,12 @@ def to_motion(source: Source, record: Record) -> tuple[Motion, list[str]]:
     """Check a record and convert it to SI units."""
     check_time_step(source, record.time_step, None)
     held = [part for part in (record.samples, record.vertical) if part is not None]
+    doubts: list[str] = []
     for samples in held:
         check_missing_values(source, samples)
-    doubts = [
-        plausibility_warnings(source, record.time_step, samples, record.unit) for samples in held
-    ]
-    si = Motion.of_samples(
-        record.time_step,
-        _in_si(source, record.samples, record.unit),
-        None if record.vertical is None else _in_si(source, record.vertical, record.unit),
-    )
-    return si, [words for sentences in doubts for words in sentences]
+        doubts += plausibility_warnings(source, record.time_step, samples, record.unit)
+    accelerations = [_in_si(source, samples, record.unit) for samples in held]
+    return Motion.of_samples(record.time_step, *accelerations), doubts
 
 
 def _read(entry: Format, source: Source, request: Request) -> Record | StoredMotion:

@@ -301,7 +301,7 @@ class Format:
     recognises: Callable[[Source], bool] = field(repr=False)
     read: Callable[[Source, Request], Record | StoredMotion] = field(repr=False)
     binary: bool = field(default=False, repr=False)
-    own: bool = field(default=False, repr=False)
+    own: bool = field(default=True, repr=False)
     holds: str = field(default="", repr=False)
     unit: str = field(default="", repr=False)
 

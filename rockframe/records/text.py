@@ -11,7 +11,6 @@ from rockframe.records.checks import (
     check_requested_time_step,
     check_time_step,
     checked_time_step,
-    header_mismatch_warnings,
     make_record,
 )
 from rockframe.records.components import FileComponent, choose_component
@@ -53,7 +52,7 @@ from rockframe.records.text_header import (
     has_times,
     is_direction,
     is_rising,
-    stated_peak,
+    stated_peaks,
     stated_step,
     time_scale,
     unit_of_header,
@@ -169,12 +168,12 @@ def _record(
     name, line = column.unit, None
     if name is None or table.values.shape[1] <= 2:
         name, line = unit_of_header(source, table, requested=request.unit is not None)
-    unit, as_read, messages = choose_unit(source, request, name, line)
-    peak = stated_peak(table.header) if table.values.shape[1] <= 2 else None
-    if peak is not None:
-        messages += header_mismatch_warnings(source, values, unit, time_step, [peak])
-    described: Metadata = {"unit_as_read": as_read, **metadata}
-    return Record(time_step, values, unit, described, warnings=(*messages, *warnings))
+    chosen = choose_unit(source, request, name, line)
+    described: Metadata = {"unit_as_read": chosen[1], **metadata}
+    stated = stated_peaks(table.header) if table.values.shape[1] <= 2 else []
+    return make_record(
+        source, values, time_step, chosen, described, stated=stated, warnings_after=warnings
+    )
 
 
 def _counted(source: Source, request: Request, head: FirstLines) -> Record:

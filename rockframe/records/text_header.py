@@ -11,12 +11,7 @@ from rockframe.records.components import UNKNOWN, Orientation, orientation_of
 from rockframe.records.numbers import NUMBER, WHOLE_NUMBER, with_exponent_e
 from rockframe.records.reader import Source, quoted_first_line
 from rockframe.records.text_columns import Table, split_header
-from rockframe.records.unit_names import (
-    SLASHED,
-    STATED_UNIT,
-    acceleration_unit,
-    other_quantity,
-)
+from rockframe.records.unit_names import SLASHED, STATED_UNIT, acceleration_unit, other_quantity
 
 # with one level of inner brackets, as in [1/(s^2)]; no blank can be matched in two ways
 _BRACKETED: Final = re.compile(r"[(\[{]([^()\[\]{}]*(?:\([^()]*\)[^()\[\]{}]*)?)[)\]}]")
@@ -316,13 +311,13 @@ def stated_step(header: list[tuple[int, str]]) -> tuple[float, int] | None:
     return None
 
 
-def stated_peak(header: list[tuple[int, str]]) -> StatedValue | None:
-    """Find a peak in the header."""
+def stated_peaks(header: list[tuple[int, str]]) -> list[StatedValue]:
+    """Find the first peak with a unit in the header."""
     for line, text in header:
         match = _PEAK.search(text)
         if match is not None:
             before, printed, after = match.groups()
             unit = (before or after or "").strip()
             if unit:
-                return StatedValue(printed, unit, line)
-    return None
+                return [StatedValue(printed, unit, line)]
+    return []

@@ -17,12 +17,7 @@ import re
 from functools import cache, partial
 from typing import Final
 
-from rockframe.records.checks import (
-    LENGTH,
-    StatedValue,
-    checked_time_step,
-    make_record,
-)
+from rockframe.records.checks import LENGTH, StatedValue, checked_time_step, make_record
 from rockframe.records.components import (
     UPWARDS,
     VERTICAL,
@@ -96,7 +91,21 @@ def _read(source: Source, request: Request) -> Record:
 
     def samples(place: int) -> Record:
         values = table()[:, place].copy()
-        return _samples(source, request, header, place, values)
+        text, unit_line = required_value(source, header, _UNITS)
+        chosen = choose_unit(source, request, text.split()[0], unit_line)
+        printed, line = _entry(source, header, _STEPS, place, "sampling interval")
+        time_step = required_number(printed, source, line)
+        checked_time_step(source, request, time_step, line)
+        announced, count_line = _entry(source, header, _COUNTS, place, "number of samples")
+        found = f"{quoted_first_line(announced)} samples"
+        count = whole_number(source, announced, found, count_line), _COUNTS, count_line
+        stated = [
+            StatedValue(text, unit, line)
+            for key, unit in ((_PEAKS, _PEAK_UNIT), (_LENGTHS, LENGTH))
+            for text, line in _list(header, key)[place : place + 1]
+        ]
+        metadata = _description(header)
+        return make_record(source, values, time_step, chosen, metadata, count=count, stated=stated)
 
     components: list[FileComponent] = []
     for place, (stated, line) in enumerate(directions[:channels]):
@@ -105,24 +114,6 @@ def _read(source: Source, request: Request) -> Record:
         read = partial(samples, place)
         components.append(FileComponent(name, read, direction, channel=place + 1, line=line))
     return choose_component(source, request, components)
-
-
-def _samples(source: Source, request: Request, header: Keys, place: int, values: Array) -> Record:
-    text, unit_line = required_value(source, header, _UNITS)
-    chosen = choose_unit(source, request, text.split()[0], unit_line)
-    printed, line = _entry(source, header, _STEPS, place, "sampling interval")
-    time_step = required_number(printed, source, line)
-    checked_time_step(source, request, time_step, line)
-    announced, count_line = _entry(source, header, _COUNTS, place, "number of samples")
-    found = f"{quoted_first_line(announced)} samples"
-    count = whole_number(source, announced, found, count_line), _COUNTS, count_line
-    stated = [
-        StatedValue(text, unit, line)
-        for key, unit in ((_PEAKS, _PEAK_UNIT), (_LENGTHS, LENGTH))
-        for text, line in _list(header, key)[place : place + 1]
-    ]
-    metadata = _description(header)
-    return make_record(source, values, time_step, chosen, metadata, count=count, stated=stated)
 
 
 def _list(header: Keys, start: str) -> list[tuple[str, int]]:

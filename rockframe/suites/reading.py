@@ -105,16 +105,10 @@ def read_suite(
         else:
             reader.read(file, format, request)
     reader.complete()
-    horizontal = {
-        component.label: component.with_metadata()
-        for component in reader.components
-        if not component.vertical
-    }
-    verticals = {
-        component.label: component.with_metadata()
-        for component in reader.components
-        if component.vertical
-    }
+    horizontal, verticals = (
+        {part.label: part.with_metadata() for part in reader.components if part.vertical is upright}
+        for upright in (False, True)
+    )
     if not horizontal:
         raise _no_motions_error(str(path), reader, len(verticals))
     _warn_of_unread(reader)

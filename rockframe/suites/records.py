@@ -9,6 +9,7 @@ from typing import Any, Final
 from rockframe.errors import ComponentError
 from rockframe.motion import GroundMotion
 from rockframe.motion.pair import HorizontalPair
+from rockframe.motion.value import replaced
 from rockframe.records import epoch_seconds
 
 FIRST: Final = "H1"
@@ -49,14 +50,7 @@ class RecordedComponent:
 
     def with_metadata(self) -> GroundMotion:
         """Return the motion with its label and all metadata."""
-        motion = self.motion
-        return GroundMotion(
-            motion.si,
-            name=self.label,
-            metadata=self.metadata,
-            history=motion.history,
-            recipe=motion.recipe,
-        )
+        return replaced(self.motion, name=self.label, metadata=self.metadata)
 
 
 def sequence_number_of(file: str) -> int | None:

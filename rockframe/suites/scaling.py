@@ -8,16 +8,11 @@ import numpy as np
 import xarray as xr
 from numpy.typing import NDArray
 
-from rockframe.errors import (
-    ComponentError,
-    RecordWarning,
-    SchemaError,
-    collected_warnings,
-    warn,
-)
+from rockframe.errors import ComponentError, RecordWarning, SchemaError, collected_warnings, warn
 from rockframe.motion import GroundMotion
 from rockframe.motion.operations.matching import USUAL_PERIODS, Target
 from rockframe.motion.quantities import ArrayLike
+from rockframe.motion.value import replaced
 from rockframe.results.joining import MOTION
 from rockframe.results.schema import SCHEMA, build_dataset, with_variables, without_fill_values
 from rockframe.signals.arrays import Array
@@ -215,10 +210,7 @@ def scaled_motions(
 
 def _scaled(motion: GroundMotion, factor: float, misfit: float) -> GroundMotion:
     scaled = motion.scaled(factor)
-    metadata = {**scaled.metadata, "spectral_misfit": misfit}
-    return type(scaled)(
-        scaled.si, name=scaled.name, metadata=metadata, history=scaled.history, recipe=scaled.recipe
-    )
+    return replaced(scaled, metadata={**scaled.metadata, "spectral_misfit": misfit})
 
 
 def matched(suite: Suite, target: Target, **arguments: Any) -> Suite:

@@ -136,7 +136,7 @@ def stored_motions(dataset: xr.Dataset) -> tuple[dict[str, GroundMotion], dict[s
 
 def _table_of(target: TargetSpectrum) -> dict[str, Any]:
     """Return a target as a table: at its own periods, or at many if it is a formula."""
-    logarithms = getattr(getattr(target.shape, "logarithm", None), "logarithms", None)
+    logarithms = getattr(target.shape, "logarithms", None)
     low, high = np.clip(target.limits, *_STORED_BAND)
     seconds = (
         np.geomspace(low, high, _PERIODS) if logarithms is None else np.exp(np.array(logarithms))

@@ -140,25 +140,18 @@ class TargetSpectrum(metaclass=SuggestingMeta):
         if values.shape != seconds.shape or not (values > 0.0).all():
             msg = f"{owner}: accelerations must be {seconds.size}, as the periods, and above zero"
             raise ComponentError(msg)
-        spread = None
+        logarithms, spread = tuple(np.log(seconds).tolist()), None
         if standard_deviations is not None:
-            deviations = np.array(
-                [
-                    to_ratio(
-                        deviation, owner=owner, name="standard_deviations", condition=_DEVIATION
-                    )
-                    for deviation in checked_list(
-                        standard_deviations, owner=owner, name="standard_deviations", of="numbers"
-                    )
-                ]
-            )
-            if deviations.shape != seconds.shape:
+            named = {"owner": owner, "name": "standard_deviations"}
+            listed = checked_list(standard_deviations, **named, of="numbers")
+            deviations = [to_ratio(each, **named, condition=_DEVIATION) for each in listed]
+            if len(deviations) != seconds.size:
                 msg = f"{owner}: standard_deviations must be {seconds.size}, as the periods"
                 raise ComponentError(msg)
-            spread = _interpolation(seconds, deviations)
+            spread = _Interpolated(logarithms, tuple(deviations))
         return cls(
             name,
-            _Exponential(_interpolation(seconds, np.log(values))),
+            _Exponential(logarithms, tuple(np.log(values).tolist())),
             spread,
             to_ratio(damping_ratio, owner=owner, name="damping_ratio", condition=DAMPING_RATIO),
             (float(seconds[0]), float(seconds[-1])),
@@ -457,12 +450,11 @@ class _Interpolated:
         return np.interp(np.log(at), self.logarithms, self.values)
 
 
-@dataclass(frozen=True)
-class _Exponential:
-    logarithm: Shape
+class _Exponential(_Interpolated):
+    """Exponential function of values that are interpolated."""
 
     def __call__(self, at: Array) -> Any:
-        return np.exp(self.logarithm(at))
+        return np.exp(super().__call__(at))
 
 
 @dataclass(frozen=True)
@@ -480,10 +472,6 @@ class _Constant:
 
     def __call__(self, at: Array) -> Array:
         return np.full(at.size, self.value)
-
-
-def _interpolation(seconds: Array, values: Array) -> _Interpolated:
-    return _Interpolated(tuple(np.log(seconds).tolist()), tuple(values.tolist()))
 
 
 def _check_array(seconds: object, owner: str) -> None:

@@ -5,12 +5,13 @@ from __future__ import annotations
 from collections.abc import Callable
 from functools import wraps
 from inspect import signature
-from typing import TYPE_CHECKING, Any, Final, TypeVar, cast
+from typing import Any, Final, TypeVar, cast
 
 from rockframe.arguments import checked_integer
 from rockframe.errors import ComponentError, short_repr
 from rockframe.motion.pulses import impulse_duration
 from rockframe.shared_arguments import with_raises_section
+from rockframe.signals import Motion
 from rockframe.suggestions import with_hints
 from rockframe.units import (
     ACCELERATION,
@@ -25,9 +26,6 @@ from rockframe.units import (
     to_ratio,
     to_si,
 )  # fmt: skip
-
-if TYPE_CHECKING:
-    from rockframe.signals import Motion
 
 Constructor = TypeVar("Constructor", bound=Callable[..., Any])
 

@@ -5,8 +5,9 @@ from __future__ import annotations
 import io
 import tomllib
 from importlib import resources
+from importlib.resources.abc import Traversable
 from pathlib import PurePath
-from typing import TYPE_CHECKING, Any, Final, cast
+from typing import Any, Final, cast
 
 import numpy as np
 
@@ -20,17 +21,12 @@ from rockframe.errors import (
     warn,
 )
 from rockframe.motion.quantities import ArrayLike, accelerations_to_si, attached_times
-from rockframe.motion.value import UNNAMED, MotionType
+from rockframe.motion.value import UNNAMED, MotionType, replaced
 from rockframe.records import PathLike, Reading, RecordLike, read_record, request_of
 from rockframe.signals import Motion
+from rockframe.signals.arrays import Array
 from rockframe.suggestions import with_hints
 from rockframe.units import POSITIVE, TIME_STEP, QuantityLike, to_si
-
-if TYPE_CHECKING:
-    from importlib.resources.abc import Traversable
-
-    from rockframe.signals.arrays import Array
-
 
 SAME_STEP: Final = 1e-6
 """Relative difference up to which the step of times is that of an argument [1]."""
@@ -294,11 +290,12 @@ def example(
     file.name = record["file"]
     motion = read(kind, file, component=record["component"] if component is None else component)
     metadata: dict[str, Any] = record["metadata"]
-    return kind(
-        motion.si,
+    source = f"source: {metadata['attribution']}; {metadata['licence']}"
+    return replaced(
+        motion,
         name=record["name"],
         metadata={**motion.metadata, **metadata},
-        history=(*motion.history, f"source: {metadata['attribution']}; {metadata['licence']}"),
+        history=(*motion.history, source),
     )
 
 

@@ -7,13 +7,7 @@ from typing import Final
 
 from rockframe.arguments import checked_choice, checked_integer
 from rockframe.errors import ComponentError, ModelWarning, warn
-from rockframe.motion.stochastic import (
-    LARGEST_DISTANCE,
-    Corners,
-    PointSource,
-    Site,
-    accelerogram,
-)
+from rockframe.motion.stochastic import LARGEST_DISTANCE, Corners, PointSource, Site, accelerogram
 from rockframe.motion.value import MotionType
 from rockframe.signals import Motion
 from rockframe.suggestions import with_hints

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Hashable
 from enum import StrEnum
-from typing import TYPE_CHECKING, Any, Final, cast
+from typing import Any, Final, cast
 
 import numpy as np
 
@@ -32,12 +32,9 @@ from rockframe.records import (
     uniform_step,
 )
 from rockframe.signals import Motion
+from rockframe.signals.arrays import Array
 from rockframe.suggestions import with_hints
 from rockframe.units import POSITIVE, TIME_STEP, QuantityLike, to_si
-
-if TYPE_CHECKING:
-    from rockframe.signals.arrays import Array
-
 
 _COARSER: Final = 1.5
 

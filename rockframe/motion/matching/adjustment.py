@@ -49,10 +49,7 @@ def taper_width(period: float) -> float:
 
 
 def wavelet_lead(period: float, damping_ratio: float) -> float:
-    """Compute the time from the peak of the wavelet to that of the oscillator.
-
-    It is :eq:`eq-wavelet-lead` [s].
-    """
+    """Compute the time from the wavelet's peak to the oscillator's, :eq:`eq-wavelet-lead` [s]."""
     share = math.sqrt(1.0 - damping_ratio**2)
     return math.atan2(share, damping_ratio) * period / (2.0 * math.pi * share)
 
@@ -60,10 +57,7 @@ def wavelet_lead(period: float, damping_ratio: float) -> float:
 def wavelet_at(
     peak_time: float, period: float, damping_ratio: float, *, time_step: float, count: int
 ) -> Wavelet:
-    """Make the wavelet to which an oscillator responds with a peak at a given time.
-
-    It is :eq:`eq-tapered-cosine`.
-    """
+    """Make the wavelet by which an oscillator peaks at a given time, :eq:`eq-tapered-cosine`."""
     duration = (count - 1) * time_step
     edge = _MIN_WIDTH * period
     centre = min(max(peak_time - wavelet_lead(period, damping_ratio), edge), duration - edge)
@@ -141,9 +135,8 @@ class Oscillators:
 
     def histories(self, samples: Array) -> Array:
         """Compute the pseudo-accelerations of all oscillators, from rest, also after the motion."""
-        from scipy import signal as module
+        from scipy import signal
 
-        signal: Any = module
         start, rise = self._lines(samples)
         histories = np.zeros((len(self._intervals), start.size + 1))
         for row, (interval, period) in enumerate(
@@ -272,9 +265,8 @@ class Adjustment(NamedTuple):
 
     def amplitudes(self, regularisation: float) -> Array:
         """Compute the amplitudes of all wavelets, :eq:`eq-matching-step`."""
-        from scipy import linalg as module
+        from scipy import linalg
 
-        linalg: Any = module
         weights = np.abs(self.misfits) + _MIN_WEIGHT
         weights = weights / np.sqrt((weights[self.greatest] ** 2).mean())
         weights[~self.greatest] = np.maximum(weights[~self.greatest], 1.0)

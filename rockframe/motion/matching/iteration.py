@@ -3,24 +3,19 @@
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING, Final, NamedTuple
+from collections.abc import Callable
+from typing import Final, NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 
 from rockframe.motion.matching.adjustment import OscillatorPeaks, Oscillators, make_adjustment
 from rockframe.motion.processing import velocity_pulses
 from rockframe.signals import Signal
+from rockframe.signals.arrays import Array
 from rockframe.signals.integrals import ground_path
 from rockframe.signals.motion import absolute_peak, knots_of
 from rockframe.signals.spectra import pseudo_spectra, spectral_peaks
-
-if TYPE_CHECKING:
-    from collections.abc import Callable
-
-    from numpy.typing import NDArray
-
-    from rockframe.signals.arrays import Array
-
 
 _SPACING: Final = 0.5
 """Relative distance of matched periods over the damping ratio: a fourth of a resonance's width."""

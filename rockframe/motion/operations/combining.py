@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import replace
-from typing import TYPE_CHECKING, Any, Final, cast
+from typing import Any, Final, cast
 
 import numpy as np
 
@@ -23,12 +23,10 @@ from rockframe.motion.value import MotionType, MotionValue
 from rockframe.records import DOWNWARDS, SENSE, UPWARDS
 from rockframe.records import VERTICAL as EITHER
 from rockframe.signals import Motion, Signal
+from rockframe.signals.arrays import Array
 from rockframe.signals.motion import COEFFICIENTS, VERTICAL
 from rockframe.suggestions import with_hints
 from rockframe.units import ANGLE, QuantityLike, degrees_text, to_si
-
-if TYPE_CHECKING:
-    from rockframe.signals.arrays import Array
 
 _RIGHT_ANGLE_TOLERANCE: Final = 1.0  # degree; agencies round azimuths to whole degrees
 _ROUNDING: Final = 1e-15

@@ -3,19 +3,15 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Callable, Mapping
 from dataclasses import replace
-from typing import TYPE_CHECKING, Any, Final
+from typing import Any, Final
 
 from rockframe.errors import ComponentError, RecordWarning, warn
-from rockframe.motion.value import MotionValue
+from rockframe.motion.value import MotionType, MotionValue
 from rockframe.records import same_start, time_after
-
-if TYPE_CHECKING:
-    from collections.abc import Callable, Mapping
-
-    from rockframe.motion.value import MotionType
-    from rockframe.signals import Motion, Signal
-    from rockframe.signals.arrays import Array
+from rockframe.signals import Motion, Signal
+from rockframe.signals.arrays import Array
 
 SAME_STEP: Final = 1e-9
 """Relative difference up to which two time steps count as equal [1]."""

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import replace
-from typing import TYPE_CHECKING, Any, Final, Protocol, runtime_checkable
+from typing import Any, Final, Protocol, runtime_checkable
 
 import numpy as np
 
@@ -19,14 +19,12 @@ from rockframe.motion.matching.iteration import (
 )
 from rockframe.motion.operations.derived import derived_motion, dropped_pieces_note
 from rockframe.motion.processing.samples import time_step_for_period, warn_of_coarse_samples
-from rockframe.motion.value import MotionType
+from rockframe.motion.value import MotionType, replaced
+from rockframe.signals import Signal
+from rockframe.signals.arrays import Array
 from rockframe.signals.spectra import check_cost
 from rockframe.suggestions import with_hints
 from rockframe.units import PERIOD, Condition, QuantityLike, RatioLike, to_ratio, to_si_values
-
-if TYPE_CHECKING:
-    from rockframe.signals import Signal
-    from rockframe.signals.arrays import Array
 
 USUAL_PERIODS: Final = ("0.1 s", "2 s")
 USUAL_TOLERANCE: Final = 0.05
@@ -164,13 +162,8 @@ def matched(
         )
         warn(msg, RecordWarning)
     if result.signal is si.horizontal:
-        return type(motion)(
-            si,
-            name=motion.name,
-            metadata={**motion.metadata, **added},
-            history=(*motion.history, words),
-            recipe=motion.recipe,
-        )
+        metadata, history = {**motion.metadata, **added}, (*motion.history, words)
+        return replaced(motion, metadata=metadata, history=history)
     across = replace(si, horizontal=result.signal)
     return derived_motion(motion, across, words, *dropped_pieces_note(si), metadata=added)
 

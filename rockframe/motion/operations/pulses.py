@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Final, Generic
+from typing import Final, Generic
 
 import numpy as np
 
@@ -17,7 +17,8 @@ from rockframe.motion.operations.derived import (
 from rockframe.motion.processing import velocity_pulses
 from rockframe.motion.processing.velocity_pulses import MIN_INDICATOR, MIN_PEAK_VELOCITY
 from rockframe.motion.value import MotionType
-from rockframe.signals import Motion
+from rockframe.signals import Motion, Signal
+from rockframe.signals.arrays import Array
 from rockframe.signals.integrals import ground_path
 from rockframe.signals.motion import MAXIMUM_SAMPLES, knots_of
 from rockframe.suggestions import suggests_names, with_hints
@@ -31,10 +32,6 @@ from rockframe.units import (
     quantity,
     to_si,
 )
-
-if TYPE_CHECKING:
-    from rockframe.signals import Signal
-    from rockframe.signals.arrays import Array
 
 SHORTEST_PERIOD: Final = "0.25 s"
 LONGEST_PERIOD: Final = "15 s"

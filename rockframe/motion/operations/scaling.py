@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from typing import TYPE_CHECKING, Final
+from typing import Final
 
 import numpy as np
 
@@ -12,6 +12,7 @@ from rockframe.motion.operations.derived import VERTICAL_PREFIX, derived_motion
 from rockframe.motion.processing.samples import warn_of_coarse_samples
 from rockframe.motion.value import MotionType
 from rockframe.records import DOWNWARDS, SENSE, UPWARDS
+from rockframe.signals import Motion, Signal
 from rockframe.signals.integrals import ground_path
 from rockframe.signals.motion import absolute_peak
 from rockframe.signals.spectra import DAMPING_RATIO, check_cost, pseudo_spectra, spectral_peaks
@@ -27,9 +28,6 @@ from rockframe.units import (
     to_ratio,
     to_si,
 )
-
-if TYPE_CHECKING:
-    from rockframe.signals import Motion, Signal
 
 _OPPOSITE: Final = {UPWARDS: DOWNWARDS, DOWNWARDS: UPWARDS}
 _USUAL_DAMPING: Final = 0.05

@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 from dataclasses import replace
 from enum import StrEnum
-from typing import TYPE_CHECKING, Any, Final, TypeAlias
+from typing import Any, Final, TypeAlias
 
 import numpy as np
 
@@ -27,7 +27,8 @@ from rockframe.motion.processing.floors import (
 from rockframe.motion.processing.samples import divided_signal, padded
 from rockframe.motion.quantities import ArrayLike
 from rockframe.motion.value import MotionType
-from rockframe.signals import Motion
+from rockframe.signals import Motion, Signal
+from rockframe.signals.arrays import Array
 from rockframe.signals.motion import MAXIMUM_SAMPLES
 from rockframe.signals.spectra import DAMPING_RATIO, MAXIMUM_PARTS
 from rockframe.suggestions import with_hints
@@ -48,14 +49,8 @@ from rockframe.units import (
     to_si_values,
 )
 
-if TYPE_CHECKING:
-    from collections.abc import Mapping
-
-    from rockframe.signals import Signal
-    from rockframe.signals.arrays import Array
-
-    _BuildingModes: TypeAlias = tuple[Array, Array, str, dict[str, Any]]
-    """Periods and participations of the modes, a description of the building, its arguments."""
+_BuildingModes: TypeAlias = tuple[Array, Array, str, dict[str, Any]]
+"""Periods and participations of the modes, a description of the building, its arguments."""
 
 _MAX_STOREYS: Final = 1000
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from dataclasses import replace
 from enum import StrEnum
-from typing import TYPE_CHECKING, Final
+from typing import Final
 
 import numpy as np
 
@@ -28,13 +28,11 @@ from rockframe.motion.processing.samples import (
     tapered,
 )
 from rockframe.motion.value import MotionType
+from rockframe.signals import Signal
+from rockframe.signals.arrays import Array
 from rockframe.signals.motion import MAXIMUM_SAMPLES
 from rockframe.suggestions import with_hints
 from rockframe.units import POSITIVE, TIME, TIME_STEP, QuantityLike, to_si
-
-if TYPE_CHECKING:
-    from rockframe.signals import Signal
-    from rockframe.signals.arrays import Array
 
 _ROUNDING: Final = 1e-6
 

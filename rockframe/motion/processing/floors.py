@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from itertools import accumulate, chain
-from typing import Any, Final, NamedTuple
+from typing import Final, NamedTuple
 
 import numpy as np
 
@@ -37,9 +37,8 @@ class FloorModes(NamedTuple):
 
 def interval_matrix(time_step: float, period: float, damping: float, powers: int) -> Array:
     """Compute the transition matrix of an oscillator over an interval, :eq:`eq-interval-matrix`."""
-    from scipy import linalg as module
+    from scipy import linalg
 
-    linalg: Any = module
     parts = math.ceil(STEPS_PER_PERIOD * time_step / period)
     kappa = 2.0 * math.pi * time_step / (parts * period)
     step = np.empty((2, 2 + powers))
@@ -98,9 +97,8 @@ def uniform_modes(storeys: int, floor: int, period: float) -> tuple[Array, Array
 
 def building_modes(masses: Array, stiffnesses: Array, floor: int) -> tuple[Array, Array]:
     """Compute the modes of a shear building, :eq:`eq-shear-building`."""
-    from scipy import linalg as module
+    from scipy import linalg
 
-    linalg: Any = module
     above = np.append(stiffnesses[1:], 0.0)
     stiffness = (
         np.diag(stiffnesses + above) - np.diag(above[:-1], 1) - np.diag(above[:-1], -1)

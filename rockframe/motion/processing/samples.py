@@ -6,19 +6,16 @@ Also a check whether time steps are short enough for given periods.
 from __future__ import annotations
 
 import math
+from collections.abc import Iterable
 from dataclasses import replace
-from typing import TYPE_CHECKING, Any, Final
+from typing import Any, Final
 
 import numpy as np
 
 from rockframe.errors import RecordWarning, warn
+from rockframe.signals import Signal
+from rockframe.signals.arrays import Array
 from rockframe.signals.motion import subdivided
-
-if TYPE_CHECKING:
-    from collections.abc import Iterable
-
-    from rockframe.signals import Signal
-    from rockframe.signals.arrays import Array
 
 _INTEGER_RATIO: Final = 1e-9
 _ANTI_ALIAS_ORDER: Final = 9  # an even order would lower low frequencies by 0.1 dB

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from functools import cache
-from typing import Any, Final, NamedTuple
+from typing import Final, NamedTuple
 
 import numpy as np
 
@@ -237,9 +237,8 @@ def _samples_to_fraction(velocity: Array, fraction: float) -> int:
 
 def _coefficients_near(velocity: Array, samples: range, wavelet: Array) -> Array:
     """Return the coefficients of a wavelet centred at consecutive samples."""
-    from scipy import signal as module
+    from scipy import signal
 
-    signal: Any = module
     half = wavelet.size // 2
     zeros = np.zeros(half)
     window = np.concatenate([zeros, velocity, zeros])[samples[0] : samples[-1] + wavelet.size]

@@ -180,10 +180,8 @@ class TestOneBadFile:
         def failing(*_):
             raise fault
 
-        entry = known_formats._PLAIN_TEXT
-        monkeypatch.setattr(
-            known_formats, "_PLAIN_TEXT", type(entry)(**{**vars(entry), where: failing})
-        )
+        entry = known_formats.TEXT
+        monkeypatch.setattr(known_formats, "TEXT", type(entry)(**{**vars(entry), where: failing}))
         with pytest.warns(RecordWarning, match=f"1 file not read .*{type(fault).__name__}"):
             suite = rf.read_suite(tmp_path)
         assert list(suite) == ["good"]
