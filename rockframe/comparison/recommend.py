@@ -122,9 +122,10 @@ def recommend(
     distance = f"off by {_error_words(errors[row, column], 2)} in {quantity}"
     if met:
         slowest = float(np.max(times)) / float(times[row, column])
+        gain = f", {_plain_number(slowest, 3)} times faster than the slowest rung"
         sentence = (
-            f"For an error of at most {_error_words(limit, 3)}, take {choice}: {distance}, {cost}, "
-            f"{_plain_number(slowest, 3)} times faster than the slowest rung."
+            f"For an error of at most {_error_words(limit, 3)}, take {choice}: {distance}, "
+            f"{cost}{gain * (slowest > 1.0)}."
         )
         if error == "peak_error" and "overturned" in dataset and dataset["overturned"][row, column]:
             sentence += (
@@ -137,6 +138,8 @@ def recommend(
             sentence += f"; the nearest is {choice}: {distance}."
         else:
             sentence += ": the scene itself does not rotate, but all rungs with its verdict do."
+    elif bool(dataset[error].isnull().all()):
+        sentence = "There is no error: the scene itself or all rungs ended before their verdict."
     else:
         sentence = "No rung tried has the verdict of the scene itself."
     return Recommendation(model, accuracy, met, sentence)

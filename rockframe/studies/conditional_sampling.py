@@ -140,13 +140,24 @@ def family_shares(levels: Sequence[Level]) -> Array:
     return count[~np.isnan(levels[0].demands)] / max(int(count.sum()), 1)
 
 
-def subset_variation(levels: Sequence[Level]) -> float:
-    """Return the coefficient of variation of the probability, :eq:`eq-subset-variation` [1]."""
-    if not subset_probability(levels) > 0.0:
-        return math.inf
+def _family_variance(levels: Sequence[Level]) -> float:
+    """Return the relative variance between families, :eq:`eq-subset-families` [1]."""
     shares = family_shares(levels)
     count = len(shares)
-    return math.sqrt(max(count * float((shares**2).sum()) - 1.0, 0.0) / (count - 1))
+    return max(count * float((shares**2).sum()) - 1.0, 0.0) / (count - 1)
+
+
+def subset_variation(levels: Sequence[Level]) -> float:
+    """Return the coefficient of variation of the probability, :eq:`eq-subset-variation` [1].
+
+    For a single level it is that of a binomial share.
+    """
+    if not subset_probability(levels) > 0.0:
+        return math.inf
+    squared = _family_variance(levels)
+    if len(levels) > 1:
+        squared = squared / (1.0 - squared) if squared < 1.0 else math.inf
+    return math.sqrt(squared)
 
 
 def subset_bounds(levels: Sequence[Level], confidence: float) -> tuple[float, float]:
@@ -164,10 +175,10 @@ def subset_bounds(levels: Sequence[Level], confidence: float) -> tuple[float, fl
         return float(lower), float(upper)
     if not subset_probability(levels) > 0.0:
         return 0.0, subset_bounds(levels[:-1], confidence)[1]
-    variation = subset_variation(levels)
-    dof = max(1.0 / variation**2 - 1.0, 1.0) if variation > 0.0 else math.inf
+    squared = _family_variance(levels)
+    dof = max(1.0 / squared - 1.0, 1.0) if squared > 0.0 else math.inf
     half_width = float(t.ppf(0.5 * (1.0 + confidence), dof))
-    factor = math.exp(half_width * math.sqrt(math.log1p(variation**2)))
+    factor = math.exp(half_width * math.sqrt(math.log1p(squared)))
     probability = subset_probability(levels)
     return probability / factor, min(1.0, probability * factor)
 

@@ -232,15 +232,17 @@ def boundary(trials: Trials, fitted: Fit, level: float) -> Array:
     likelihood. The likelihood of separated trials has a bound but no maximum, and the region is
     unbounded towards small dispersions: its boundary is set there where the dispersion is almost
     zero. This likelihood is itself the probability of the verdicts, so that both coefficients are
-    rejected together, where it is below `1 - level` of its bound, :eq:`eq-fragility-separated`.
+    rejected together, where it is below a share of its bound, :eq:`eq-fragility-separated`.
     """
     from scipy import linalg
     from scipy.special import chdtri
 
     separated = fitted.status is FragilityStatus.SEPARATED
-    drop = float(chdtri(2.0 if separated else 1.0, 1.0 - level))
+    drop = float(chdtri(1.0, 1.0 - level))
     best, observed = fitted.coefficients, fitted.information
     if separated:
+        # n trials can be separated in n - 1 ways, of which each may reject the true coefficients
+        drop = 2.0 * math.log((float(trials.weight.sum()) - 1.0) / (1.0 - level))
         best, observed, greatest = _point_within_region(trials, 0.25 * drop)
     else:
         greatest = float(log_likelihood(trials, best[:, None])[0])

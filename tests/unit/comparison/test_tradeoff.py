@@ -315,6 +315,18 @@ def test_rungs_with_a_wrong_verdict_are_not_recommended():
     assert str(unmet) == "No rung tried has the verdict of the scene itself."
 
 
+def test_the_only_rung_is_not_faster_than_itself():
+    alone = comparison_of(TIMES, ERRORS).isel(model=[1], accuracy=[0])
+    assert str(rf.recommend(alone, 0.05)).endswith("in the peak rotation, 3 ms a run.")
+
+
+def test_runs_without_a_verdict_are_not_said_to_differ_from_the_scene():
+    unknown = comparison_of(TIMES, np.full((2, 2), np.nan), agrees=False)
+    advice = rf.recommend(unknown, 0.5)
+    assert not advice.met
+    assert str(advice).endswith("the scene itself or all rungs ended before their verdict.")
+
+
 @pytest.mark.parametrize(
     ("arguments", "error", "words"),
     [

@@ -8,7 +8,7 @@ from scipy import optimize, stats
 import rockframe as rf
 from rockframe.studies.fragility import labelling
 from rockframe.studies.fragility.labelling import BoundSettings, fragility_dataset
-from rockframe.studies.fragility.likelihood import Bands, FragilityStatus, boundary, fit
+from rockframe.studies.fragility.likelihood import Bands, FragilityStatus, boundary, fit, gap
 from rockframe.studies.fragility.trials import StructureTrials, Trials
 from rockframe.studies.fragility.words import COVERAGE, bound_sentences, enough_trials
 
@@ -132,9 +132,9 @@ def test_separated_counts_have_the_bounds_of_their_likelihood():
         {"intensity": ([1.0, 2.0, 3.0, 4.0], "m/s^2"), "exceeded": [0, 0, 3, 5], "trials": 5}
     )
     assert found.fragility_status == FragilityStatus.SEPARATED
-    drop = -2.0 * np.log(0.05)
-    dispersions = np.geomspace(0.01, 1.0, 400)[:, None, None]
-    medians = np.linspace(2.0, 4.0, 401)[None, :, None]
+    drop = -2.0 * np.log(0.05 / 19.0)  # 20 trials can be separated in 19 ways
+    dispersions = np.geomspace(0.01, 2.0, 400)[:, None, None]
+    medians = np.linspace(1.0, 5.0, 801)[None, :, None]
     eta = np.log(np.array([1.0, 2.0, 3.0, 4.0]) / medians) / dispersions
     counts = np.array([0.0, 0.0, 3.0, 5.0])
     of_each = counts * stats.norm.logcdf(eta) + (5.0 - counts) * stats.norm.logcdf(-eta)
@@ -167,6 +167,25 @@ def test_separated_single_runs_have_bounds_with_coverage():
     for name, truth in (("median_intensity", 1.0), ("dispersion", 0.4)):
         inside = (found[f"{name}_lower_bound"] <= truth) & (found[f"{name}_upper_bound"] >= truth)
         assert float(inside[bounded].mean()) >= 0.9, name
+
+
+@pytest.mark.parametrize(("runs", "capacity_spread"), [(10, 0.7), (20, 0.4)])
+def test_bounds_hold_where_separation_is_rare(runs, capacity_spread):
+    """One sample in seven, or in twenty, is separated, though the dispersion is large."""
+    rng, samples = np.random.default_rng(6), []
+    while len(samples) < 40:
+        logs = 0.6 * rng.standard_normal(runs)
+        over = (capacity_spread * rng.standard_normal(runs) < logs).astype(float)
+        trials = Trials.from_verdicts(logs[:, None], over, np.ones(runs))
+        if 0.0 < over.sum() < runs and gap(trials) is not None:
+            samples.append(StructureTrials(trials, None, 0, runs))
+    found = fragility_dataset(
+        samples, {"limit_state": len(samples)}, [MEASURE], BoundSettings(Bands.PROFILE, 0.95),
+        {"trials": "runs"},
+    )  # fmt: skip
+    for name, truth in (("median_intensity", 1.0), ("dispersion", capacity_spread)):
+        inside = (found[f"{name}_lower_bound"] <= truth) & (found[f"{name}_upper_bound"] >= truth)
+        assert float(inside.mean()) >= 0.85, name
 
 
 def test_bracketed_capacities_have_likelihood_bounds():
