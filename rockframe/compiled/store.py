@@ -9,17 +9,22 @@ import time
 from collections.abc import Callable, Generator, Iterable, Iterator
 from contextlib import contextmanager, suppress
 from functools import cache, partial
+from importlib import resources
 from importlib.util import resolve_name
 from pathlib import Path
 from types import ModuleType
-from typing import Any, Final
+from typing import TYPE_CHECKING, Any, Final
 
-PACKAGE: Final = Path(__file__).parent.parent
-_SOURCES: Final = ("constants.py", "compiled/*.py", "signals/*.py", "dynamics/**/*.py",
-                   "solve/**/*.py", "results/along_steps.py")  # fmt: skip
-"""Files of the package that machine code depends on."""
+if TYPE_CHECKING:
+    from importlib.resources.abc import Traversable
 
 _NAME: Final = __name__.partition(".")[0]
+PACKAGE: Final["Traversable"] = resources.files(_NAME)
+"""The files of the package, which may be in an archive."""
+_SOURCES: Final = ("constants.py", "compiled", "signals", "dynamics", "solve",
+                   "results/along_steps.py")  # fmt: skip
+"""Files and folders of the package that machine code depends on."""
+
 _INSTALLED: Final = tuple(
     Path(sysconfig.get_paths()[kind]) for kind in ("stdlib", "platstdlib", "purelib", "platlib")
 )
@@ -29,9 +34,10 @@ _INSTALLED: Final = tuple(
 def digest_of_sources(function: Callable[..., Any], classes: Iterable[type]) -> str | None:
     """Return a digest of all files that the machine code of a function depends on, or None."""
     files = _own_files({function.__module__, *(kind.__module__ for kind in classes)})
-    if files is None:
+    package = _package_digest()
+    if files is None or package is None:
         return None
-    return digest(_package_digest(), *(path.read_bytes() for path in files))
+    return digest(package, *(path.read_bytes() for path in files))
 
 
 def digest(*contents: bytes) -> str:
@@ -44,10 +50,20 @@ def digest(*contents: bytes) -> str:
 
 
 @cache
-def _package_digest() -> bytes:
-    files = sorted(path for pattern in _SOURCES for path in PACKAGE.glob(pattern))
-    parts = [part for path in files for part in (path.name.encode(), path.read_bytes())]
-    return digest(*parts).encode()
+def _package_digest() -> bytes | None:
+    """Return a digest of the package's sources, or None: a frozen program may not have them."""
+    files = [file for place in _SOURCES for file in _modules_in(PACKAGE / place)]
+    parts = [part for file in files for part in (file.name.encode(), file.read_bytes())]
+    return digest(*parts).encode() if files else None
+
+
+def _modules_in(place: "Traversable") -> "Iterator[Traversable]":
+    """Return the files of Python's source in a folder and those in it, or a file itself."""
+    if place.is_dir():
+        for part in sorted(place.iterdir(), key=lambda part: part.name):
+            yield from _modules_in(part)
+    elif place.name.endswith(".py") and place.is_file():
+        yield place
 
 
 def _own_files(modules: set[str]) -> list[Path] | None:
@@ -243,7 +259,7 @@ def cache_folders() -> list[Path]:
         own = "~/Library/Caches"
     else:
         own = os.environ.get("XDG_CACHE_HOME", "~/.cache")
-    places = [PACKAGE / "__pycache__"]
+    places = [Path(str(PACKAGE)) / "__pycache__"]
     with suppress(RuntimeError):  # a user without a home, as containers make them
         places.insert(0, Path(own).expanduser() / "rockframe")
     return places
