@@ -193,27 +193,33 @@ def module_file(function: Callable[..., Any], text: str, classes: Iterable[type]
     modules = sorted({function.__module__, *(kind.__module__ for kind in classes)})
     name = f"{function.__name__}_{digest(' '.join(modules).encode(), text.encode())}"
     for folder in cache_folders():
+        place = folder / f"code-{sources}"
+        file = place / f"{name}.py"
         try:
-            place = folder / f"code-{sources}"
-            if place.is_dir():
+            if code_folder(file).is_dir():
                 os.utime(place)  # it is in use
             else:
-                place.mkdir(parents=True, exist_ok=True)
+                code_folder(file).mkdir(parents=True, exist_ok=True)
                 _remove_unused(folder)
-            file = place / f"{name}.py"
             if not file.is_file():  # other processes see the whole file or none
                 part = file.with_suffix(f".{os.getpid()}")
                 part.write_text(text)
                 part.replace(file)
         except OSError:
-            continue
+            if not has_code(file):  # by another user: it can be read
+                continue
         return file
     return None
 
 
+def code_folder(file: Path) -> Path:
+    """Return the folder of the machine code of a module."""
+    return file.parent / "__pycache__"
+
+
 def has_code(file: Path) -> bool:
     """Whether machine code of a module is stored beside it."""
-    return any((file.parent / "__pycache__").glob(f"{file.stem}.*.nbc"))
+    return any(code_folder(file).glob(f"{file.stem}.*.nbc"))
 
 
 def is_compiled_elsewhere(file: Path) -> bool:
@@ -242,10 +248,19 @@ def lock_while_compiling(file: Path, waiting: Callable[[], bool]) -> Generator[N
             release()
 
 
-def remove_code(file: Path) -> None:
-    """Remove the machine code of a module."""
-    for code_file in (file.parent / "__pycache__").glob(f"{file.stem}.*.nb[ci]"):
-        code_file.unlink(missing_ok=True)
+def has_removed_code(file: Path) -> bool:
+    """Remove the machine code of a module; return whether that is permitted."""
+    try:
+        for code_file in code_folder(file).glob(f"{file.stem}.*.nb[ci]"):
+            code_file.unlink(missing_ok=True)
+    except OSError:
+        return False
+    return True
+
+
+def is_module(file: Path) -> bool:
+    """Whether a file is a module of the store."""
+    return file.parent.parent in cache_folders()
 
 
 def cache_folders() -> list[Path]:
