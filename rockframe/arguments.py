@@ -2,7 +2,7 @@
 
 from collections.abc import Callable, Iterable, Mapping
 from enum import StrEnum
-from inspect import signature
+from inspect import Parameter, Signature, signature
 from operator import index
 from typing import Any, SupportsIndex, TypeGuard, TypeVar, cast
 
@@ -80,6 +80,14 @@ def checked_mapping(value: object, *, owner: str, name: str, example: str) -> Ma
     raise ComponentError(msg)
 
 
+def call_signature(function: Callable[..., Any]) -> Signature:
+    """Return the arguments of a function; one that only passes on its own has those it wraps."""
+    called = signature(function, follow_wrapped=False)
+    kinds = {parameter.kind for parameter in called.parameters.values()}
+    passes_on = kinds and kinds <= {Parameter.VAR_POSITIONAL, Parameter.VAR_KEYWORD}
+    return signature(function) if passes_on else called
+
+
 def checked_function(value: object, *arguments: str, owner: str, name: str) -> Callable[..., Any]:
     """Read an argument that is a function of some positional arguments."""
     expected = f"a function of {' and '.join(arguments)}"
@@ -87,7 +95,7 @@ def checked_function(value: object, *arguments: str, owner: str, name: str) -> C
         msg = f"{owner}: {name} must be {expected}, got {short_repr(value)}"
         raise ComponentError(msg)
     try:
-        parameters = signature(value)
+        parameters = call_signature(value)
     except ValueError:  # no signature, as of functions of NumPy
         return value
     try:

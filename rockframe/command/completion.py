@@ -9,21 +9,23 @@ from rockframe.command.commands import COMMANDS
 
 _BASH: Final = """\
 _rockframe() {
-    local word=${COMP_WORDS[COMP_CWORD]} command=${COMP_WORDS[1]} words=""
+    local word=${COMP_WORDS[COMP_CWORD]} words="" options=""
     if [ "$COMP_CWORD" -eq 1 ]; then
-        words="@COMMANDS@ --help --version"
+        words="@COMMANDS@" options="--help --version"
     else
-        case $command in
+        case ${COMP_WORDS[1]} in
 @CASES@
         esac
+        case "${COMP_WORDS[1]} ${COMP_WORDS[COMP_CWORD - 1]}" in
+@VALUES@
+        esac
     fi
+    case $word in -*) words=$options ;; esac
     COMPREPLY=($(compgen -W "$words" -- "$word"))
-    if [ "$COMP_CWORD" -gt 1 ] && [ "${word#-}" = "$word" ]; then
-        COMPREPLY+=($(compgen -f -- "$word"))
-    fi
 }
-complete -o filenames -F _rockframe rockframe
+complete -o bashdefault -o default -F _rockframe rockframe
 """
+"""Where it has no words, bash completes names of files, with the quotes that they need."""
 _ZSH: Final = """\
 _rockframe() {
     local -a commands
@@ -62,17 +64,41 @@ def _options(command: Command) -> list[tuple[CommandArgument, str]]:
     ]
 
 
-def _choices(command: Command) -> list[str]:
-    return [word for argument in command.arguments for word in argument.settings.get("choices", ())]
+def _choices(argument: CommandArgument) -> str:
+    """Return the words that are the values of an argument; empty if others are possible."""
+    return " ".join(argument.settings.get("choices", ()))
+
+
+def _choices_without_option(command: Command) -> str:
+    """Return the words that may follow a command."""
+    return " ".join(
+        _choices(argument)
+        for argument in command.arguments
+        if _choices(argument) and not argument.names[0].startswith("-")
+    )
 
 
 def _bash() -> str:
-    cases = []
+    cases: list[str] = []
+    values: list[str] = []
     for command in COMMANDS:
-        words = [*_choices(command), *(name for _, name in _options(command)), "--help"]
-        cases.append(f'            {command.name}) words="{" ".join(words)}" ;;')
-    names = " ".join(command.name for command in COMMANDS)
-    return _BASH.replace("@COMMANDS@", names).replace("@CASES@", "\n".join(cases))
+        names = " ".join([*(name for _, name in _options(command)), "--help"])
+        words = _choices_without_option(command)
+        cases.append(f'            {command.name}) words="{words}" options="{names}" ;;')
+        values += [
+            f'            "{command.name} {name}") words="{_choices(argument)}" ;;'
+            for argument, name in _options(command)
+            if _choices(argument)
+        ]
+    filled = {
+        "COMMANDS": " ".join(command.name for command in COMMANDS),
+        "CASES": "\n".join(cases),
+        "VALUES": "\n".join(values),
+    }
+    text = _BASH
+    for place, words in filled.items():
+        text = text.replace(f"@{place}@", words)
+    return text
 
 
 def _zsh() -> str:
@@ -82,8 +108,8 @@ def _zsh() -> str:
             f"'{name}[{_unquoted_help(argument)}]{_zsh_value(argument)}'"
             for argument, name in _options(command)
         ]
-        choices = _choices(command)
-        places = f"'*:choice:({' '.join(choices)})'" if choices else "'*:file:_files'"
+        choices = _choices_without_option(command)
+        places = f"'*:choice:({choices})'" if choices else "'*:file:_files'"
         cases.append(f"        {command.name}) _arguments {' '.join([*words, places])} ;;")
     names = "\n".join(f"        '{command.name}:{command.summary}'" for command in COMMANDS)
     return _ZSH.replace("@COMMANDS@", names).replace("@CASES@", "\n".join(cases))
@@ -92,7 +118,9 @@ def _zsh() -> str:
 def _zsh_value(argument: CommandArgument) -> str:
     if "action" in argument.settings:
         return ""
-    return ":file:_files" if argument.is_file else ":value:"
+    if argument.is_file:
+        return ":file:_files"
+    return f":value:({_choices(argument)})" if _choices(argument) else ":value:"
 
 
 def _fish() -> str:
@@ -105,13 +133,19 @@ def _fish() -> str:
         seen = f"complete -c rockframe -n '__fish_seen_subcommand_from {command.name}'"
         lines += [
             f"{seen} -l {name.removeprefix('--')} -d '{_unquoted_help(argument)}'"
-            f"{'' if 'action' in argument.settings else ' -r'}"
+            f"{_fish_value(argument)}"
             for argument, name in _options(command)
         ]
-        choices = _choices(command)
+        choices = _choices_without_option(command)
         if choices:
-            lines.append(f"{seen} -f -a '{' '.join(choices)}'")
+            lines.append(f"{seen} -f -a '{choices}'")
     return "\n".join(lines) + "\n"
+
+
+def _fish_value(argument: CommandArgument) -> str:
+    if "action" in argument.settings:
+        return ""
+    return f" -x -a '{_choices(argument)}'" if _choices(argument) else " -r"
 
 
 def _unquoted_help(argument: CommandArgument) -> str:

@@ -9,7 +9,8 @@ import os
 import re
 from collections.abc import Callable, Generator
 from contextlib import contextmanager, nullcontext
-from functools import update_wrapper, wraps
+from functools import cache, update_wrapper, wraps
+from importlib import import_module
 from importlib.util import find_spec
 from pathlib import Path
 from threading import RLock
@@ -88,6 +89,20 @@ def _as_python(function: Callable[..., Any]) -> Callable[..., Any]:
     return call
 
 
+@cache
+def _can_compile() -> bool:
+    """Whether numba can be imported and is not disabled; tried when the first entry is called."""
+    try:
+        numba: Any = import_module("numba")
+    except Exception as problem:  # damaged, or for other versions of what it needs
+        _logger.warning(
+            "numba cannot be imported, and rockframe runs as plain Python, some hundred times "
+            "slower (%s: %s)", type(problem).__name__, problem,
+        )  # fmt: skip
+        return False
+    return not numba.config.DISABLE_JIT
+
+
 def table(values: Any) -> Vector:
     """Return a table of constants, of one or two dimensions, in the form that is read fastest."""
     array = np.array(values, dtype=np.float64)
@@ -155,6 +170,8 @@ class Entry:
 
     def __call__(self, *arguments: Any) -> Any:
         """Run the machine code, or the function itself where there is none."""
+        if not _can_compile():
+            return self._plain(*arguments)
         words: list[Any] = []
         sources: list[BoundSource] = []
         structure = tuple(_structure_of(argument, words, sources) for argument in arguments)
@@ -192,6 +209,8 @@ class Entry:
 
     def is_compiled_within(self, patience: float, arguments: tuple[Any, ...]) -> bool:
         """See :func:`compiled_within`."""
+        if not _can_compile():
+            return False
         from rockframe.compiled.parallel import estimate_wall_time
 
         sources: list[BoundSource] = []
@@ -303,7 +322,7 @@ def is_worth_calling(function: BoundFunction) -> bool:
     is compiled when the other one has taken as long as that takes.
     """
     source = function.source
-    if source.address or not COMPILED or not _CALLS_BACK:
+    if source.address or not COMPILED or not _CALLS_BACK or not _can_compile():
         return True
     from rockframe.compiled.parallel import START_AFTER
 

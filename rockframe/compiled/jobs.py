@@ -8,10 +8,12 @@ these files is part of the name of the folder that the module is written to (`st
 import inspect
 import logging
 import sys
+import sysconfig
 from collections.abc import Callable, Generator, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass
-from functools import cached_property
+from functools import cache, cached_property
+from importlib import import_module
 from pathlib import Path
 from types import ModuleType
 from typing import Annotated, Any, Final, get_origin, get_type_hints
@@ -101,6 +103,38 @@ class SourceWriter:
         return name
 
 
+class _StoreLocator:
+    """Tells numba where machine code of the store is: also if it can be read only.
+
+    numba itself keeps none in such a folder, and takes another one if its own settings name it.
+    """
+
+    def __init__(self, file: Path) -> None:
+        self._file = file
+
+    @classmethod
+    def from_function(cls, _: Any, file: str) -> "_StoreLocator | None":
+        """Return the locator of a module of the store, None for any other."""
+        return cls(Path(file)) if store.is_module(Path(file)) else None
+
+    def ensure_cache_path(self) -> None:
+        """Do nothing: the store has made the folder."""
+
+    def get_cache_path(self) -> str:
+        """Return the folder."""
+        return str(store.code_folder(self._file))
+
+    def get_source_stamp(self) -> str:
+        """Return what changes with the sources: they are in the names of the module and folder."""
+        return self._file.stem
+
+    def get_disambiguator(self) -> str:
+        """Return what distinguishes functions of the same name: there is only one."""
+        return "1"
+
+
+_caching: Final[Any] = import_module("numba.core.caching").CompileResultCacheImpl
+_caching._locator_classes = [_StoreLocator, *_caching._locator_classes]
 _logger = logging.getLogger("rockframe")
 _warned: Final[set[str]] = set()
 
@@ -177,7 +211,8 @@ class Job:
         """The module's file; None where it cannot be stored."""
         text, scope, signature = self._written
         classes = [kind for kind in scope.values() if isinstance(kind, type)]
-        return store.module_file(self.function, f"{text}\n# {signature}\n", classes)
+        text = f"{text}\n# {signature}\n# for {_machine()}\n"
+        return store.module_file(self.function, text, classes)
 
     @cached_property
     def calls(self) -> set[Any]:
@@ -198,21 +233,24 @@ class Job:
     def make(self, waiting: Callable[[], bool] = lambda: True) -> Any:
         """Return the compiled function: loaded from the store, or compiled now."""
         file = self.file
-        if file is None:
-            register_kernels()
-            return self._compiled(keep=False)
-        if self.is_stored:
+        keep = file is not None
+        if file is not None and self.is_stored:
             try:
                 return self._compiled(keep=True)
             except Exception:  # damaged: reading it may raise anything
-                store.remove_code(file)
-                _logger.warning("machine code in %s was damaged, and is compiled anew", file.parent)
+                _warn_once(f"machine code in {file.parent} was damaged, and is compiled anew")
+                keep = store.has_removed_code(file)
         register_kernels()
+        if file is None or not keep:
+            return self._compiled(keep=False)
         with store.lock_while_compiling(file, waiting):
             try:
                 return self._compiled(keep=True)
-            except (RuntimeError, OSError) as problem:  # no place that numba could write to
-                _warn_once(f"machine code is not kept on disk, and made anew each time: {problem}")
+            except OSError as problem:  # the disk may be full
+                _warn_once(
+                    f"machine code cannot be kept in {file.parent} ({problem.strerror}), and is "
+                    "made anew each time"
+                )
                 return self._compiled(keep=False)
 
     def _compiled(self, *, keep: bool) -> Any:
@@ -233,6 +271,14 @@ class Job:
             if self.is_bound:
                 return numba.cfunc(signature, **options)(module.__dict__["run"])
             return numba.njit(signature, nogil=True, **options)(module.__dict__["run"])
+
+
+@cache
+def _machine() -> str:
+    """Return the compiler, Python and the processor that machine code is for."""
+    codegen = import_module("numba.core.registry").cpu_target.target_context.codegen()
+    python = sysconfig.get_config_var("SOABI")
+    return f"numba {numba.__version__}, {python}, {codegen.magic_tuple()}"
 
 
 def estimate_seconds(jobs: Sequence[Job]) -> float:

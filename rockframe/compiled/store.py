@@ -9,17 +9,22 @@ import time
 from collections.abc import Callable, Generator, Iterable, Iterator
 from contextlib import contextmanager, suppress
 from functools import cache, partial
+from importlib import resources
 from importlib.util import resolve_name
 from pathlib import Path
 from types import ModuleType
-from typing import Any, Final
+from typing import TYPE_CHECKING, Any, Final
 
-PACKAGE: Final = Path(__file__).parent.parent
-_SOURCES: Final = ("constants.py", "compiled/*.py", "signals/*.py", "dynamics/**/*.py",
-                   "solve/**/*.py", "results/along_steps.py")  # fmt: skip
-"""Files of the package that machine code depends on."""
+if TYPE_CHECKING:
+    from importlib.resources.abc import Traversable
 
 _NAME: Final = __name__.partition(".")[0]
+PACKAGE: Final["Traversable"] = resources.files(_NAME)
+"""The files of the package, which may be in an archive."""
+_SOURCES: Final = ("constants.py", "compiled", "signals", "dynamics", "solve",
+                   "results/along_steps.py")  # fmt: skip
+"""Files and folders of the package that machine code depends on."""
+
 _INSTALLED: Final = tuple(
     Path(sysconfig.get_paths()[kind]) for kind in ("stdlib", "platstdlib", "purelib", "platlib")
 )
@@ -29,9 +34,10 @@ _INSTALLED: Final = tuple(
 def digest_of_sources(function: Callable[..., Any], classes: Iterable[type]) -> str | None:
     """Return a digest of all files that the machine code of a function depends on, or None."""
     files = _own_files({function.__module__, *(kind.__module__ for kind in classes)})
-    if files is None:
+    package = _package_digest()
+    if files is None or package is None:
         return None
-    return digest(_package_digest(), *(path.read_bytes() for path in files))
+    return digest(package, *(path.read_bytes() for path in files))
 
 
 def digest(*contents: bytes) -> str:
@@ -44,10 +50,20 @@ def digest(*contents: bytes) -> str:
 
 
 @cache
-def _package_digest() -> bytes:
-    files = sorted(path for pattern in _SOURCES for path in PACKAGE.glob(pattern))
-    parts = [part for path in files for part in (path.name.encode(), path.read_bytes())]
-    return digest(*parts).encode()
+def _package_digest() -> bytes | None:
+    """Return a digest of the package's sources, or None: a frozen program may not have them."""
+    files = [file for place in _SOURCES for file in _modules_in(PACKAGE / place)]
+    parts = [part for file in files for part in (file.name.encode(), file.read_bytes())]
+    return digest(*parts).encode() if files else None
+
+
+def _modules_in(place: "Traversable") -> "Iterator[Traversable]":
+    """Return the files of Python's source in a folder and those in it, or a file itself."""
+    if place.is_dir():
+        for part in sorted(place.iterdir(), key=lambda part: part.name):
+            yield from _modules_in(part)
+    elif place.name.endswith(".py") and place.is_file():
+        yield place
 
 
 def _own_files(modules: set[str]) -> list[Path] | None:
@@ -177,27 +193,33 @@ def module_file(function: Callable[..., Any], text: str, classes: Iterable[type]
     modules = sorted({function.__module__, *(kind.__module__ for kind in classes)})
     name = f"{function.__name__}_{digest(' '.join(modules).encode(), text.encode())}"
     for folder in cache_folders():
+        place = folder / f"code-{sources}"
+        file = place / f"{name}.py"
         try:
-            place = folder / f"code-{sources}"
-            if place.is_dir():
+            if code_folder(file).is_dir():
                 os.utime(place)  # it is in use
             else:
-                place.mkdir(parents=True, exist_ok=True)
+                code_folder(file).mkdir(parents=True, exist_ok=True)
                 _remove_unused(folder)
-            file = place / f"{name}.py"
             if not file.is_file():  # other processes see the whole file or none
                 part = file.with_suffix(f".{os.getpid()}")
                 part.write_text(text)
                 part.replace(file)
         except OSError:
-            continue
+            if not has_code(file):  # by another user: it can be read
+                continue
         return file
     return None
 
 
+def code_folder(file: Path) -> Path:
+    """Return the folder of the machine code of a module."""
+    return file.parent / "__pycache__"
+
+
 def has_code(file: Path) -> bool:
     """Whether machine code of a module is stored beside it."""
-    return any((file.parent / "__pycache__").glob(f"{file.stem}.*.nbc"))
+    return any(code_folder(file).glob(f"{file.stem}.*.nbc"))
 
 
 def is_compiled_elsewhere(file: Path) -> bool:
@@ -226,10 +248,19 @@ def lock_while_compiling(file: Path, waiting: Callable[[], bool]) -> Generator[N
             release()
 
 
-def remove_code(file: Path) -> None:
-    """Remove the machine code of a module."""
-    for code_file in (file.parent / "__pycache__").glob(f"{file.stem}.*.nb[ci]"):
-        code_file.unlink(missing_ok=True)
+def has_removed_code(file: Path) -> bool:
+    """Remove the machine code of a module; return whether that is permitted."""
+    try:
+        for code_file in code_folder(file).glob(f"{file.stem}.*.nb[ci]"):
+            code_file.unlink(missing_ok=True)
+    except OSError:
+        return False
+    return True
+
+
+def is_module(file: Path) -> bool:
+    """Whether a file is a module of the store."""
+    return file.parent.parent in cache_folders()
 
 
 def cache_folders() -> list[Path]:
@@ -243,7 +274,7 @@ def cache_folders() -> list[Path]:
         own = "~/Library/Caches"
     else:
         own = os.environ.get("XDG_CACHE_HOME", "~/.cache")
-    places = [PACKAGE / "__pycache__"]
+    places = [Path(str(PACKAGE)) / "__pycache__"]
     with suppress(RuntimeError):  # a user without a home, as containers make them
         places.insert(0, Path(own).expanduser() / "rockframe")
     return places

@@ -3,7 +3,7 @@
 import re
 from enum import Enum, StrEnum
 from types import SimpleNamespace
-from typing import Any, ClassVar, Final, Generic, NoReturn, Self, TypeVar, overload
+from typing import TYPE_CHECKING, Any, ClassVar, Final, Generic, NoReturn, Self, TypeVar, overload
 
 import numpy as np
 
@@ -37,7 +37,12 @@ REQUIRED: Final = Missing.REQUIRED
 DERIVED: Final = Missing.DERIVED
 
 PublicValue = TypeVar("PublicValue")
-Default = TypeVar("Default")
+if TYPE_CHECKING:  # mypy does not infer it from the default of an argument
+    from typing_extensions import TypeVar as TypeVarWithDefault
+
+    Default = TypeVarWithDefault("Default", default=Missing)
+else:
+    Default = TypeVar("Default")
 Option = TypeVar("Option", bound=StrEnum)
 
 

@@ -3,6 +3,7 @@
 import math
 import pprint
 from enum import StrEnum
+from importlib import resources
 from os import PathLike
 from pathlib import Path
 from textwrap import fill, indent
@@ -24,7 +25,7 @@ from rockframe.writing import FileKind, checked_path, write_file
 _OWNER: Final = "to_opensees"
 _SIGNATURE: Final = "Written by rockframe "
 _FILE_KIND: Final = FileKind.marked("a model for OpenSees", (".py",), _SIGNATURE)
-_MODEL_FILE: Final = Path(__file__).with_name("_opensees_model.py")
+_MODEL_FILE: Final = "_opensees_model.py"
 _OUTPUT_STEP: Final = 0.01
 _STEPS_PER_PERIOD: Final = 80
 """Steps in a period of the block bouncing on its springs; a quarter for rigid ground."""
@@ -258,7 +259,8 @@ def _docstring(
 
 
 def _file_text(head: str, arguments: dict[str, Any], arrays: dict[str, Any]) -> str:
-    body = _MODEL_FILE.read_text().split('"""\n', 1)[1]
+    model = resources.files("rockframe.export").joinpath(_MODEL_FILE).read_text(encoding="utf-8")
+    body = model.split('"""\n', 1)[1]
     numbers = pprint.pformat(arguments, width=95, sort_dicts=False)
     columns = "".join(
         f"PARAMETERS[{name!r}] = {_array_text(values, digits)}\n"

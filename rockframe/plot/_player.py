@@ -6,6 +6,7 @@ import re
 import zlib
 from collections.abc import Iterator, Sequence
 from html import escape
+from importlib import resources
 from pathlib import Path
 from typing import Any, Final, NamedTuple, cast
 
@@ -48,7 +49,7 @@ _ROUNDING: Final = 1e-9
 _STEP_COUNT: Final = 30000
 """Steps between the least and the largest number of a kind in a page."""
 _MISSING: Final = -32768
-_TEMPLATE: Final = Path(__file__).with_name("player.html")
+_TEMPLATE: Final = "player.html"
 _TITLE: Final = "player"
 FILE_KIND: Final = FileKind.marked(
     "a player", (".html", ".htm"), generator_tag(_TITLE), generator_tag("animation")
@@ -366,7 +367,7 @@ def _strip_data(state: xr.DataArray, words: str) -> dict[str, Any]:
 def _fill_template(sentence: str, motion: str, data: dict[str, Any]) -> str:
     # otherwise "</script>" in a text would end the script
     written = json.dumps(data, separators=(",", ":")).replace("</", "<\\/")
-    page = _TEMPLATE.read_text(encoding="utf-8")
+    page = resources.files("rockframe.plot").joinpath(_TEMPLATE).read_text(encoding="utf-8")
     filled = {"GENERATOR": generator_tag(_TITLE, __version__), "TITLE": escape(sentence or "A run"),
               "MOTION": escape(motion), "DATA": written}  # fmt: skip
     return re.sub(r"@(\w+)@", lambda match: filled[match[1]], page)

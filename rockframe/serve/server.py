@@ -8,7 +8,7 @@ from collections.abc import Callable, Mapping
 from functools import partial
 from http import HTTPStatus
 from http.server import BaseHTTPRequestHandler, ThreadingHTTPServer
-from pathlib import Path
+from importlib import resources
 from typing import Any, Final
 from urllib.parse import parse_qsl, urlsplit
 
@@ -127,7 +127,8 @@ class _RequestHandler(BaseHTTPRequestHandler):
             self._send(HTTPStatus.BAD_REQUEST, "text/plain; charset=utf-8", words)
             return
         if target.path in _FILES:
-            text = Path(__file__).with_name(target.path.removeprefix("/")).read_text("utf-8")
+            file = resources.files("rockframe.serve") / target.path.removeprefix("/")
+            text = file.read_text(encoding="utf-8")
             self._send(HTTPStatus.OK, f"{_FILES[target.path]}; charset=utf-8", text)
             return
         answers: dict[str, Callable[[Mapping[str, str]], None]] = {

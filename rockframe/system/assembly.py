@@ -36,7 +36,7 @@ from rockframe.system.options import (
 )
 from rockframe.system.own_base import OwnBase
 from rockframe.system.own_scene import OwnScene
-from rockframe.system.parts import RESTRAINER, Parts, sort_parts, support_of
+from rockframe.system.parts import RESTRAINER, Parts, check_registered, sort_parts, support_of
 from rockframe.system.rear_wall import rear_wall_setting
 from rockframe.system.rocking_frame import rocking_frame_setting
 from rockframe.system.setting import Setting, describe
@@ -251,6 +251,7 @@ class Assembly:
     @cached_property
     def setting(self) -> Setting:
         """The scene's numbers in SI units."""
+        check_registered(self.parts.structural())
         return self.scene.make_setting(self.parts, self.options)
 
     @property

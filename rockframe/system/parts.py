@@ -1,6 +1,6 @@
 """The parts of a scene by their slots, such as block, pads, soil and ground."""
 
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from inspect import getattr_static
 from typing import Any, Final, cast
@@ -131,20 +131,31 @@ def _subclass_faults(part: Component, known: type) -> list[str]:
     return []
 
 
-def part_hint(part: object) -> str:
-    """Say how to make a part of something that is not one; empty if that is not known."""
+def unknown_part_fault(part: object) -> str:
+    """Say that something is not a part, and how to make one of it if that is known."""
+    hint = ""
     if isinstance(part, type) and registered_class(part) is not None:
-        return "; it is the class itself: call it with its values"
-    if isinstance(part, OwnBase):
-        return f"; it {_registration_hint(type(part))}"
-    if isinstance(part, Component):
-        return "; no scene that is registered is made of it"
-    return ""
+        hint = "; it is the class itself: call it with its values"
+    elif isinstance(part, OwnBase | Link):
+        hint = f"; it {_registration_hint(type(part))}"
+    elif isinstance(part, Component):
+        hint = "; no scene that is registered is made of it"
+    return f"{short_repr(part)} is not a part of a system{hint}"
+
+
+def check_registered(parts: Iterable[Component | GroundMotion | None]) -> None:
+    """Refuse parts of classes that another process has registered, and this one has not."""
+    strangers = [
+        part for part in parts if part is not None and registered_class(type(part)) is None
+    ]
+    if strangers:
+        raise AssemblyError([unknown_part_fault(part) for part in strangers])
 
 
 def _registration_hint(kind: type) -> str:
-    if issubclass(kind, OwnBase):
-        return f"is not registered; call rockframe.register({kind.__name__}) first"
+    if issubclass(kind, OwnBase | Link):
+        call = f"call rockframe.register({kind.__name__})"
+        return f"is not registered in this process; {call} beside the class"
     return "is no OwnBase; derive it from rockframe.extension.OwnBase, and register it"
 
 
@@ -206,6 +217,7 @@ class Parts:
     @classmethod
     def of(cls, by_slot: Mapping[str, Component | GroundMotion | None]) -> "Parts":
         """Make parts from a mapping by slots, in any order; None leaves a slot empty."""
+        check_registered(by_slot.values())
         order = {slot: i for i, slot in enumerate(slots())}
         values = [slot for slot, part in by_slot.items() if part is not None]
         # several parts of one slot keep their order
@@ -272,7 +284,7 @@ def sort_parts(values: Sequence[object], faults: list[str]) -> Parts:
     for part in values:
         kind = registered_class(type(part))
         if kind is None:
-            faults.append(f"{short_repr(part)} is not a part of a system{part_hint(part)}")
+            faults.append(unknown_part_fault(part))
             continue
         slot = _KINDS[kind].slot
         if slot == RESTRAINER:

@@ -8,7 +8,7 @@ from typing import Any, Final, TypeAlias
 
 import numpy as np
 
-from rockframe.arguments import checked_choice
+from rockframe.arguments import call_signature, checked_choice
 from rockframe.components import Component, InitialState, RockingFrame, Stack
 from rockframe.components.parameters import Choice, Count, Declared, Flag, Text
 from rockframe.errors import ModelWarning, StudyError, short_repr, warn
@@ -235,7 +235,7 @@ class FunctionScene:
     def axis(self, name: str, value: object) -> Axis:
         """Read an axis that names an argument, or else the motion's scale."""
         kinds = (inspect.Parameter.POSITIONAL_OR_KEYWORD, inspect.Parameter.KEYWORD_ONLY)
-        argument = inspect.signature(self.function).parameters.get(name)
+        argument = call_signature(self.function).parameters.get(name)
         if argument is None or argument.kind not in kinds:
             name = full_name(name)
             of_run = _run_axis(name, value)
@@ -247,7 +247,7 @@ class FunctionScene:
     def faults(self, axes: Iterable[Axis]) -> list[str]:
         """Tell whether the function takes the axes, and all that it needs is among them."""
         values = {axis.name: None for axis in axes if axis.changes is Changes.ARGUMENT}
-        signature = inspect.signature(self.function)
+        signature = call_signature(self.function)
         try:
             signature.bind(**values)
         except TypeError as problem:

@@ -2,6 +2,7 @@
 
 import itertools
 import json
+import os
 import re
 import shlex
 import shutil
@@ -487,8 +488,36 @@ def test_bash_completes(tmp_path):
 
     assert completed("rockframe", "re") == ["report"]
     assert completed("rockframe", "run", "--acc") == ["--accuracy"]
-    assert completed("rockframe", "run", "scene") == ["scene.toml"]
-    assert set(completed("rockframe", "completion", "")) >= {"bash", "zsh", "fish"}
+    assert completed("rockframe", "run", "scene") == []  # bash itself completes files
+    assert completed("rockframe", "convert", "") == []
+    assert completed("rockframe", "convert", "--to", "") == ["at2", "csv", "nc"]
+    assert completed("rockframe", "completion", "") == ["bash", "zsh", "fish"]
+
+
+@pytest.mark.skipif(
+    shutil.which("bash") is None or sys.platform == "win32", reason="no bash or no terminal"
+)
+def test_bash_quotes_names_of_files(tmp_path):
+    (tmp_path / "done.sh").write_text(script("bash"))
+    (tmp_path / "my scene.toml").touch()
+    master, terminal = os.openpty()
+    lines = "source done.sh; rockframe() { printf '<%s>' \"$@\"; }\nrockframe run my\t\nexit\n"
+    os.write(master, lines.encode())
+    with subprocess.Popen(
+        [shutil.which("bash"), "--norc", "--noprofile", "-i"], cwd=tmp_path,
+        stdin=terminal, stdout=terminal, stderr=subprocess.DEVNULL, start_new_session=True,
+    ) as bash:  # fmt: skip
+        bash.wait(timeout=60)
+    written = os.read(master, 100_000).decode()
+    os.close(terminal)
+    os.close(master)
+    assert "<run><my scene.toml>" in written
+
+
+@pytest.mark.parametrize(("shell", "place"), [("zsh", "'*:file:_files'"), ("fish", " -l to ")])
+def test_values_of_option_are_completed_behind_it_only(shell, place):
+    (line,) = (row for row in script(shell).splitlines() if "convert" in row and "at2" in row)
+    assert place in line
 
 
 def test_it_runs_as_a_module():

@@ -1,12 +1,12 @@
 """Machine code on disk: shared with other processes, and compiled again if a source changes."""
 
 import importlib
-import itertools
 import os
 import re
 import subprocess
 import sys
 import time
+import zipfile
 from pathlib import Path
 from types import SimpleNamespace
 
@@ -251,6 +251,20 @@ def test_every_state_of_the_sources_has_a_folder_of_its_own(own, tmp_path, monke
     assert file() is None
 
 
+def test_sources_in_archives_differ_and_without_sources_nothing_is_kept(tmp_path, monkeypatch):
+    monkeypatch.setattr(store, "_package_digest", store._package_digest.__wrapped__)
+    folders = set()
+    for text in ("A = 1\n", "A = 2\n"):
+        with zipfile.ZipFile(tmp_path / "package.zip", "w") as archive:
+            archive.writestr("package/dynamics/a/b.py", text)
+        with zipfile.ZipFile(tmp_path / "package.zip") as archive:
+            monkeypatch.setattr(store, "PACKAGE", zipfile.Path(archive, "package/"))
+            folders.add(store.module_file(some_function, "pass", ()).parent)
+    assert len(folders) == 2
+    monkeypatch.setattr(store, "PACKAGE", tmp_path / "frozen")
+    assert store.module_file(some_function, "pass", ()) is None
+
+
 def test_editing_entry_module_changes_folder(own, monkeypatch):
     module = load(own, monkeypatch)
     before = store.module_file(module.add_one.__wrapped__, "pass", ())
@@ -284,9 +298,9 @@ def test_changed_bytes_of_imported_library_change_folder(own, monkeypatch):
 
 def test_digest_covers_all_compiled_package_sources():
     marks = re.compile(r"^\s*@(kernel|inlined|entry)\b", re.MULTILINE)
-    included = set(
-        itertools.chain.from_iterable(store.PACKAGE.glob(pattern) for pattern in store._SOURCES)
-    )
+    included = {
+        file for place in store._SOURCES for file in store._modules_in(store.PACKAGE / place)
+    }
     marked = {path for path in store.PACKAGE.rglob("*.py") if marks.search(path.read_text())}
     assert len(marked) > 20
     assert marked <= included
@@ -393,6 +407,7 @@ def test_next_cache_folder_replaces_unusable_first(tmp_path, monkeypatch):
     for variable in ("XDG_CACHE_HOME", "LOCALAPPDATA", "HOME"):
         monkeypatch.setenv(variable, str(tmp_path / "own"))
     monkeypatch.setattr(store, "PACKAGE", tmp_path / "package")
+    monkeypatch.setattr(store, "_package_digest", lambda: b"some sources")
     first = store.module_file(some_function, "pass", ())
     assert first.is_relative_to(tmp_path / "own")
     assert not (tmp_path / "package").exists()

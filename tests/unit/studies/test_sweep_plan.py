@@ -1,6 +1,7 @@
 """Axes, tables and motions of a sweep, and refusals before anything runs."""
 
 from concurrent.futures import ThreadPoolExecutor
+from functools import wraps
 
 import numpy as np
 import pandas as pd
@@ -403,3 +404,23 @@ def test_scene_function_argument_may_be_named_like_an_abbreviation():
 
     runs = rf.sweep(scene, PULSE, PGA=[1.0, 2.0], **FAST)
     assert runs.sizes["PGA"] == 2
+
+
+def test_wrapped_scene_function_has_arguments_of_its_wrapper():
+    def scene(width, height):
+        return rf.System(rf.Block(width=width, height=height, mass="1 t"))
+
+    @wraps(scene)
+    def of_slenderness(slenderness):
+        return scene("1 m", f"{slenderness} m")
+
+    @wraps(scene)
+    def passing_on(*arguments, **named):
+        return scene(*arguments, **named)
+
+    runs = rf.sweep(of_slenderness, PULSE, slenderness=[3.0, 4.0], **FAST)
+    again = rf.sweep(passing_on, PULSE, width=["1 m"], height=["3 m", "4 m"], **FAST)
+    np.testing.assert_array_equal(runs.peak_rotation, again.peak_rotation[0])
+    for function, axes in ((of_slenderness, {"width": ["1 m"]}), (passing_on, {"mass": ["1 t"]})):
+        with pytest.raises(StudyError, match="do not fit the arguments of"):
+            rf.sweep(function, PULSE, **axes)
