@@ -134,7 +134,8 @@ class _StoreLocator:
 
 
 _caching: Final[Any] = import_module("numba.core.caching").CompileResultCacheImpl
-_caching._locator_classes = [_StoreLocator, *_caching._locator_classes]
+if hasattr(_caching, "_locator_classes"):  # not of numba's interface: without it numba looks itself
+    _caching._locator_classes = [_StoreLocator, *_caching._locator_classes]
 _logger = logging.getLogger("rockframe")
 _warned: Final[set[str]] = set()
 
