@@ -220,7 +220,7 @@ class SlidingCoupledSetting(CoupledSetting):
     def words(self) -> Words:
         """Describe block, cap and soil, and their friction."""
         return sliding_words(super().words(), *(
-            (f"{name}: friction at rest, and of slip", friction.words())
+            friction.row(f"{name}: ")
             for name, friction in zip(("pads", "soil"), self.frictions, strict=True)
             if friction != NO_SLIP
         ))  # fmt: skip

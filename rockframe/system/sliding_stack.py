@@ -49,15 +49,10 @@ class SlidingStackSetting(StackSetting):
         """Name of the model."""
         return f"{super().model}-sliding"
 
-    def cautions(self) -> list[str]:
-        """Return warnings, also about bodies that slide at rest under their restrainers."""
-        names = [f"body {k}" for k in range(1, len(self.bodies) + 1)]
-        return [*super().cautions(), *self.rest_slip_cautions(*names)]
-
     def words(self) -> Words:
         """Describe bodies, bases and friction."""
         return sliding_words(super().words(), *(
-            (f"base {k}: friction at rest, and of slip", friction.words())
+            friction.row(f"base {k}: ")
             for k, friction in enumerate(self.frictions, 1)
         ))  # fmt: skip
 
@@ -188,16 +183,12 @@ class SlidingRestrainedSetting(RestrainedSetting):
         """Name of the model."""
         return "rigid-restrained-sliding"
 
-    def cautions(self) -> list[str]:
-        """Return warnings, also about a block that slides at rest under its restrainers."""
-        return [*super().cautions(), *self.rest_slip_cautions("the block")]
-
     def words(self) -> Words:
         """Describe the block, its links and its friction."""
         text = super().words()
         slides = sliding_words(
             text,
-            ("friction at rest, and of slip", self.friction.words()),
+            self.friction.row(),
             ("friction to land without slip", f"{friction_to_roll_over(self.body):.6g}"),
             restraint=HELD_BY_FRICTION,
         )
