@@ -11,11 +11,7 @@ from rockframe.components.block_numbers import BlockSI
 from rockframe.dynamics.body_statics import Pose
 from rockframe.dynamics.protocol import ContactModel
 from rockframe.errors import AssemblyError
-from rockframe.system.bodies import (
-    BaseLoad,
-    block_body,
-    with_point_mass,
-)
+from rockframe.system.bodies import BaseLoad, block_body, with_point_mass
 from rockframe.system.links import place_links
 from rockframe.system.options import Options, restraint_words
 from rockframe.system.parts import support_of

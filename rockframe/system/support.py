@@ -28,12 +28,7 @@ from rockframe.dynamics.protocol import CORNER_REACTIONS
 from rockframe.dynamics.single_body import eccentricity_of
 from rockframe.dynamics.statics import StandingChain
 from rockframe.system.bodies import BaseLoad, Restitutions, base_restitution, restitution_cautions
-from rockframe.system.statics import (
-    StandingBodies,
-    Statics,
-    required_states,
-    static_values,
-)
+from rockframe.system.statics import StandingBodies, Statics, required_states, static_values
 from rockframe.units import angle_words
 
 NO_VERTICAL_START: Final = (
