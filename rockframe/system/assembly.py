@@ -21,7 +21,8 @@ from rockframe.system.compatibility import (
     SLIDING_AT_SMALL_ROTATION,
     base_friction,
     combination_faults,
-    depth_and_point_cautions,
+    depth_cautions,
+    outside_point_cautions,
     size_faults,
     unused_option_cautions,
 )
@@ -250,7 +251,8 @@ class Assembly:
         """Warnings about the scene."""
         return [
             *self.setting.cautions(),
-            *depth_and_point_cautions(self.parts),
+            *outside_point_cautions(self.parts),
+            *depth_cautions(self.parts),
             *unused_option_cautions(self.parts, self.options),
         ]
 

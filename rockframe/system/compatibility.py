@@ -171,8 +171,8 @@ def _stack_faults(stack: Stack, parts: Parts) -> list[str]:
     return faults
 
 
-def depth_and_point_cautions(parts: Parts) -> list[str]:
-    """Warn of depths that differ, and of links outside their bodies, which can be simulated."""
+def depth_cautions(parts: Parts) -> list[str]:
+    """Warn of depths that differ, which can be simulated."""
     depths: dict[str, float] = {}  # depth with which each was made, where it is known
     for part in (parts.cap or parts.block, parts.soil):
         # without this a component without a depth would look for names like it
@@ -180,12 +180,10 @@ def depth_and_point_cautions(parts: Parts) -> list[str]:
         depth = getattr(part, "depth", None) if known else None
         if depth is not None:
             depths[type(part).__name__] = float(depth.m_as("m"))
-    outside = _outside_point_cautions(parts) if parts.links else []
     if len(depths) < 2 or math.isclose(*depths.values(), rel_tol=_DEPTH_TOLERANCE):
-        return outside
+        return []
     (upper, above), (lower, below) = depths.items()
     return [
-        *outside,
         f"the {lower} was built for a base of a depth of {below:.6g} m, but the {upper} on it is "
         f"{above:.6g} m deep: its stiffness is the subgrade modulus times that depth",
     ]
@@ -198,7 +196,7 @@ def _linked_bodies(parts: Parts) -> tuple[BlockSI, ...]:
     return () if parts.block is None else (parts.block.si,)
 
 
-def _outside_point_cautions(parts: Parts) -> list[str]:
+def outside_point_cautions(parts: Parts) -> list[str]:
     """Warn of links at points that are above or below their bodies, or far beside them.
 
     A bracket or the arm of a statue may reach beyond the base, by no more than the body's height.

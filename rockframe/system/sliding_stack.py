@@ -63,42 +63,38 @@ class SlidingStackSetting(StackSetting):
     def beyond_edges(self, ending: Ending) -> list[str]:
         """Warn of bodies that slipped beyond an edge of the body below, which is not modelled."""
         pairs = zip(self.bodies, self.bodies[1:], self.offsets, self.slips_of(ending), strict=False)
-        cautions = (
-            overhang_caution(
+        return [
+            text
+            for k, (upper, lower, offset, slips) in enumerate(pairs, 1)
+            for text in overhang_cautions(
                 slips, offset, upper.half_width, lower.half_width, (f"body {k}", f"body {k + 1}")
             )
-            for k, (upper, lower, offset, slips) in enumerate(pairs, 1)
-        )
-        return [text for text in cautions if text]
+        ]
 
 
-def overhang_caution(
+def overhang_cautions(
     slips: SlipRange, offset: float, upper: float, lower: float, names: Sequence[str]
-) -> str:
-    """Warn of a body that slipped beyond an edge of the one below; empty if it did not.
-
-    `upper` and `lower` are half the widths of both [m].
-    """
+) -> list[str]:
+    """Warn of a body that slipped beyond an edge of the one below; half widths of both [m]."""
     overhang = max(slips.right + offset, slips.left - offset) - (lower - upper)
     if overhang <= MIN_OVERHANG * upper:
-        return ""
-    return (
+        return []
+    return [
         f"{names[0]} slides {overhang:.3g} m beyond the edge of {names[1]}, whose top goes "
         "on without end in the model: it would tip about that edge sooner"
-    )
+    ]
 
 
 def sliding_stack_setting(bases: Sequence[Component], held: StackSetting) -> StackSetting:
     """Return the setting of stacked bodies: one with slip where bases have friction."""
     slips = any(getattr(one.si, "friction", None) is not None for one in bases)
     _refuse_many_modes(bases, slips)
-    if not slips:
+    checked = held.options.sliding is Sliding.CHECKED
+    if not slips or (checked and len(held.bodies) == 1):
         return held
     frictions = [base_friction(one, held.options) for one in bases]
     faults = list[str]()
-    if held.options.sliding is Sliding.CHECKED and len(held.bodies) == 1:
-        return held
-    if held.options.sliding is Sliding.CHECKED:
+    if checked:
         faults.append("friction in a Stack is computed: give no sliding='checked', or no friction")
     elif any(held.rigid):
         faults += sheared_tendon_faults(held)
