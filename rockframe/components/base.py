@@ -436,7 +436,7 @@ def changed_arguments(
 
 def _with_defaults(kind: type[Component], values: Mapping[str, object]) -> dict[str, object]:
     """Add defaults to arguments; refuse unknown and missing ones as Python does."""
-    declared = kind._declared  # pyright: ignore[reportPrivateUsage]
+    declared = kind.declared()
     call = f"{kind.__qualname__}.__init__()"
     for name in values:
         if name not in declared:
@@ -465,7 +465,7 @@ def _constructor(kind: type[Component]) -> Any:
 
     def __init__(self: Component, *positional: object, **values: object) -> None:  # noqa: N807
         if positional:
-            names = ", ".join(kind._declared)  # pyright: ignore[reportPrivateUsage]
+            names = ", ".join(kind.declared())
             call, count = f"{kind.__qualname__}.__init__()", 1 + len(positional)
             msg = f"{call} takes 1 positional argument but {count} were given. It takes {names}"
             raise ArgumentError(msg)
@@ -480,7 +480,7 @@ def _constructor(kind: type[Component]) -> Any:
             default=_default(parameter, Argument.empty),
             annotation=parameter.annotation,
         )
-        for name, parameter in kind._declared.items()  # pyright: ignore[reportPrivateUsage]
+        for name, parameter in kind.declared().items()
     ]
     this = Argument("self", Argument.POSITIONAL_OR_KEYWORD)
     __init__.__signature__ = Signature([this, *arguments])  # type: ignore[attr-defined]

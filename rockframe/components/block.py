@@ -43,16 +43,13 @@ _SIZES: Final = frozenset({"width", "height", "mass"})
 _SIDES: Final = ("width", "height")
 
 
-class _SizeParameters:
-    """Quantities that determine width and height together, as in :meth:`Block.from_size`."""
-
-    radius = Parameter(LENGTH, POSITIVE, doc="R0, distance from a corner to the centre of mass.")
-    slenderness = Ratio(POSITIVE, doc="Height over width, H/B.", example="4")
-
-
 _SIZE_PARAMETERS: Final = {
-    name: one for name, one in vars(_SizeParameters).items() if isinstance(one, Parameter | Ratio)
+    "radius": Parameter(LENGTH, POSITIVE, doc="R0, distance from a corner to the centre of mass."),
+    "slenderness": Ratio(POSITIVE, doc="Height over width, H/B.", example="4"),
 }
+"""Quantities that determine width and height together, as in :meth:`Block.from_size`."""
+for _name, _parameter in _SIZE_PARAMETERS.items():
+    _parameter.name = _name
 
 
 class Block(Component):
@@ -136,13 +133,30 @@ class Block(Component):
         eccentricity: QuantityLike | None = None,
     ) -> None:
         if centre_of_mass is not None:
-            centre_height, eccentricity = _centre_of_mass_arguments(
-                type(self).__name__, centre_of_mass, centre_height, eccentricity
+            centre_height, eccentricity = self._read_centre_of_mass(
+                centre_of_mass, centre_height, eccentricity
             )
         super().__init__(
             width=width, height=height, mass=mass, shape_factor=shape_factor, inertia=inertia,
             centre_height=centre_height, eccentricity=eccentricity,
         )  # fmt: skip
+
+    @classmethod
+    def _read_centre_of_mass(
+        cls, value: object, height: object, eccentricity: object
+    ) -> tuple[QuantityLike, QuantityLike]:
+        """Read the position of the centre of mass: height above the base, and eccentricity."""
+        if height is not None or eccentricity is not None:
+            words = "gives centre_height and eccentricity; give it alone"
+        elif isinstance(value, tuple | list) and len(cast("tuple[object, ...]", value)) == 2:
+            return cast("tuple[QuantityLike, QuantityLike]", value)
+        else:
+            words = (
+                "needs two lengths, the height above the base and the distance to the right of its "
+                f"middle, such as ('0.7 m', '0.05 m'); got {short_repr(value)}"
+            )
+        msg = f"{cls.__name__}: centre_of_mass {words}"
+        raise ComponentError(msg)
 
     @property
     def centre_of_mass(self) -> tuple[Quantity, Quantity]:
@@ -180,15 +194,14 @@ class Block(Component):
         0.05 meter
         """
         if "centre_of_mass" in changes:
-            height, beside = changes.get("centre_height"), changes.get("eccentricity")
-            place = _centre_of_mass_arguments(
-                type(self).__name__, changes.pop("centre_of_mass"), height, beside
+            changes["centre_height"], changes["eccentricity"] = self._read_centre_of_mass(
+                changes.pop("centre_of_mass"),
+                changes.get("centre_height"),
+                changes.get("eccentricity"),
             )
-            changes |= {"centre_height": place[0], "eccentricity": place[1]}
         block = super().replace(**changes)
         same = {name for name in _SIZES if getattr(block.si, name) == getattr(self.si, name)}
-        unchanged = self.left_behind(changes.keys() - same)
-        if unchanged:
+        if unchanged := self.left_behind(changes.keys() - same):
             values = " and ".join(
                 f"{name}, {getattr(self.si, name):.4g} {self._declared[name].unit}"
                 for name in unchanged
@@ -271,9 +284,8 @@ class Block(Component):
             return super().with_si(values)
         for name, value in sizes.items():
             if not POSITIVE.holds(value):
-                _SIZE_PARAMETERS[name].read(
-                    _SIZE_PARAMETERS[name].write(value), type(self).__name__
-                )
+                parameter = _SIZE_PARAMETERS[name]
+                parameter.read(parameter.write(value), type(self).__name__)
         others = {name: value for name, value in values.items() if name not in _SIZE_PARAMETERS}
         return super().with_si({**others, **self._width_and_height(sizes, others)})
 
@@ -483,19 +495,3 @@ class Block(Component):
     def maximum_restitution(self) -> float:
         """eps_max of Eq. (4); the lesser of both corners [1]."""
         return self.si.maximum_restitution
-
-
-def _centre_of_mass_arguments(
-    owner: str, value: object, height: object, eccentricity: object
-) -> tuple[QuantityLike, QuantityLike]:
-    """Read the position of the centre of mass: height above the base, and eccentricity."""
-    if height is not None or eccentricity is not None:
-        msg = f"{owner}: centre_of_mass gives centre_height and eccentricity; give it alone"
-        raise ComponentError(msg)
-    if isinstance(value, tuple | list) and len(cast("tuple[object, ...]", value)) == 2:
-        return cast("tuple[QuantityLike, QuantityLike]", value)
-    msg = (
-        f"{owner}: centre_of_mass needs two lengths, the height above the base and the distance "
-        f"to the right of its middle, such as ('0.7 m', '0.05 m'); got {short_repr(value)}"
-    )
-    raise ComponentError(msg)

@@ -8,14 +8,7 @@ from typing import ClassVar, Final
 from rockframe.components.base import Component
 from rockframe.components.parameters import Parameter, SIValues
 from rockframe.errors import short_repr
-from rockframe.units import (
-    ANGLE,
-    ANGULAR_VELOCITY,
-    LENGTH,
-    VELOCITY,
-    Condition,
-    QuantityLike,
-)
+from rockframe.units import ANGLE, ANGULAR_VELOCITY, LENGTH, VELOCITY, Condition, QuantityLike
 
 
 def _in_degrees(rotation: str) -> str:

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any, ClassVar, Final, Generic, NoReturn, Self,
 
 import numpy as np
 
-from rockframe.arguments import checked_choice
+from rockframe.arguments import checked_bool, checked_choice
 from rockframe.errors import AccessError, ComponentError, short_repr
 from rockframe.suggestions import with_hints
 from rockframe.units import (
@@ -341,12 +341,11 @@ class Flag(Declared[bool, bool]):
 
     def read(self, value: object, owner: str) -> bool:
         """Read a truth value, or the word ``true`` or ``false``."""
-        if isinstance(value, bool | np.bool_):
-            return bool(value)
-        if isinstance(value, str) and value in _BOOLEANS:
-            return _BOOLEANS[value]
-        msg = f"{owner}: {self.name} must be True or False, got {short_repr(value)}"
-        raise ComponentError(msg)
+        if isinstance(value, np.bool_):
+            value = bool(value)
+        elif isinstance(value, str):
+            value = _BOOLEANS.get(value, value)
+        return checked_bool(value, owner=owner, name=self.name)
 
     def write(self, value: bool) -> str | None:
         """Write the word; None for the default."""

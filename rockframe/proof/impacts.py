@@ -15,12 +15,7 @@ from rockframe.proof.balls import (
     matrix_product,
 )
 from rockframe.proof.flow import SetOfStates, bound_motion, short_flow
-from rockframe.proof.problem import (
-    CornerNumbers,
-    Deviations,
-    GroundPiece,
-    require,
-)
+from rockframe.proof.problem import CornerNumbers, Deviations, GroundPiece, require
 
 
 class ImpactEnclosure(NamedTuple):

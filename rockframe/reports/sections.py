@@ -115,7 +115,7 @@ def scene_section(dataset: xr.Dataset, system: System | None, units: DisplayUnit
         yield page.parameter_table(
             (name, _format_value(value, units))
             for name, value in system.options.to_dict().items()
-            if name != "coupling" or system.scene.coupling is not None
+            if name != "coupling" or system.assembly.scene.coupling is not None
         )
     yield page.subtitle("Model")
     # runs keep the description of their model, analyses do not

@@ -157,10 +157,7 @@ InitialCondition: TypeAlias = InitialState | Ending
 
 def start_of(initial: InitialCondition) -> Start | Ending:
     """Return a beginning as the integrator takes it."""
-    if isinstance(initial, Ending):
-        return initial
-    si = initial.si
-    return Start(si.rotation, si.angular_velocity, si.vertical_displacement, si.vertical_velocity)
+    return initial if isinstance(initial, Ending) else Start(**vars(initial.si))
 
 
 def read_continuation(dataset: xr.Dataset, system: Assembly, faults: list[str]) -> InitialCondition:

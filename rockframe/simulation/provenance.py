@@ -1,7 +1,8 @@
 """Attributes of a result that describe its motion and system, and rebuilding of both from them."""
 
 import json
-from collections.abc import Iterable, Mapping
+from collections.abc import Generator, Iterable, Mapping
+from contextlib import contextmanager
 from enum import StrEnum
 from typing import Any, Final
 
@@ -57,8 +58,8 @@ def motion_words(attributes: Mapping[str, Any]) -> str:
     return display_name(str(attributes.get("motion", "")), history)
 
 
-def check_unswept_system(dataset: xr.Dataset) -> None:
-    """Refuse a case picked out of a sweep whose axes change the system that attributes describe."""
+def system_text(dataset: xr.Dataset) -> str:
+    """Return the JSON text of a result's system; refuse a case of a sweep that changes it."""
     axes = json.loads(dataset.attrs.get("axes_json", "[]"))
     changed = [
         str(axis["name"])
@@ -73,6 +74,11 @@ def check_unswept_system(dataset: xr.Dataset) -> None:
             "be the one that was swept; rf.case(dataset).system is that of a case"
         )
         raise SchemaError(msg)
+    text = dataset.attrs.get("system_json")
+    if not isinstance(text, str):
+        msg = "the dataset has no attribute 'system_json'; expected a result of simulate()"
+        raise SchemaError(msg)
+    return text
 
 
 def motion_after_end(
@@ -158,30 +164,43 @@ def _joined(dataset: xr.Dataset, name: str, count: int) -> NDArray[Any]:
     return np.concatenate(parts)
 
 
-def description_by_names(value: object) -> Mapping[str, Any]:
-    """Return the description of a system as a mapping; refuse anything else."""
-    return checked_mapping(value, owner="System", name="description", example="that of to_dict()")
+@contextmanager
+def damage_reported(words: str) -> Generator[None]:
+    """Raise a SchemaError that begins with these words for exceptions of damaged descriptions."""
+    try:
+        yield
+    except (ValueError, KeyError, TypeError, AttributeError) as problem:
+        reason = f"there is no {problem}" if isinstance(problem, KeyError) else problem
+        if isinstance(problem, json.JSONDecodeError):
+            reason = f"the JSON of system or motion is damaged ({problem})"
+        msg = f"{words}: {reason}"
+        raise SchemaError(msg) from problem
 
 
 def parts_and_options(
-    description: Mapping[str, Any], arguments: Iterable[str]
-) -> tuple[list[Component], dict[str, Any]]:
+    description: object, arguments: Iterable[str]
+) -> tuple[list[Component | GroundMotion], dict[str, Any]]:
     """Return the parts and options in a description of a system, which takes these arguments."""
-    if "parts" not in description_by_names(description):
+    described = checked_mapping(
+        description, owner="System", name="description", example="that of to_dict()"
+    )
+    value = described.get("motion")
+    motion = [] if value is None else [GroundMotion.from_dict(value)]
+    if "parts" not in described:
         msg = "found no 'parts'; expected a list of them, as to_dict() gives it"
         raise SchemaError(msg)
     known = [name for name in arguments if name != "parts"]
     allowed = (*known, "parts", "motion")
     strange = [
         f"{short_repr(name)}{did_you_mean(name, allowed)}"
-        for name in description
+        for name in described
         if name not in allowed
     ]
     if strange:
         msg = f"found {', '.join(strange)}; expected parts, motion, {', '.join(known)}"
         raise SchemaError(msg)
-    options = {name: str(description[name]) for name in known if name in description}
-    return [component_from_dict(part) for part in description["parts"]], options
+    options = {name: str(described[name]) for name in known if name in described}
+    return [*map(component_from_dict, described["parts"]), *motion], options
 
 
 def arguments_of_run(dataset: xr.Dataset) -> dict[str, Any]:

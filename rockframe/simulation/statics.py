@@ -9,7 +9,7 @@ import xarray as xr
 from rockframe.dynamics.events import ContactState
 from rockframe.errors import AssemblyError, ComponentError, short_repr
 from rockframe.results.outcome import slope_attributes
-from rockframe.results.schema import SCHEMA, build_dataset
+from rockframe.results.schema import SCHEMA, Results, build_dataset
 from rockframe.signals.arrays import AnyArray
 from rockframe.system.assembly import Assembly
 from rockframe.system.statics import vibration_modes
@@ -31,9 +31,7 @@ def equilibrium(system: Assembly) -> xr.Dataset:
         }
     values["overturning_angle"] = setting.overturning_angle
     values["uplift_angle"] = setting.uplift_angle
-    return build_dataset(
-        values, _attributes_of(system), title="Rest", source="vertical equilibrium"
-    )
+    return _labelled(system, values, "Rest", "vertical equilibrium")
 
 
 def moment_rotation(system: Assembly, angles: object) -> xr.Dataset:
@@ -55,9 +53,7 @@ def moment_rotation(system: Assembly, angles: object) -> xr.Dataset:
     for name in states[0].reactions if states else ():
         if f"held_{name}" in SCHEMA:
             values[f"held_{name}"] = _column(state.reactions[name] for state in states)
-    return build_dataset(
-        values, _attributes_of(system), title="Moment and rotation", source="vertical equilibrium"
-    )
+    return _labelled(system, values, "Moment and rotation", "vertical equilibrium")
 
 
 def _column(numbers: Iterable[float]) -> AnyArray:
@@ -84,15 +80,14 @@ def frequencies(system: Assembly) -> xr.Dataset:
     names = list(dict.fromkeys(motion.coordinates))
     for row, name in enumerate(names):
         values[f"{name}_shape"] = shapes[:, row :: len(names)] if motion.bodies else shapes[:, row]
-    return build_dataset(
-        values, _attributes_of(system), title="Modes of small motion", source="eigenvalues"
-    )
+    return _labelled(system, values, "Modes of small motion", "eigenvalues")
 
 
-def _attributes_of(system: Assembly) -> dict[str, str]:
-    return {
+def _labelled(system: Assembly, values: Results, title: str, source: str) -> xr.Dataset:
+    attributes = {
         "model": system.setting.model,
         "model_description": system.description,
         **slope_attributes(system.options.slope),
         "system_json": system.json,
     }
+    return build_dataset(values, attributes, title=title, source=source)

@@ -5,24 +5,24 @@ from collections.abc import Mapping, Sequence
 from importlib import import_module
 from inspect import signature
 from pathlib import Path
-from typing import Any, Final, Literal, Self
+from typing import Any, Literal, Self
 
 import xarray as xr
 
 from rockframe.arguments import checked_bool, checked_dataset
 from rockframe.components import InitialState
-from rockframe.errors import ComponentError, ModelWarning, SchemaError, warn
+from rockframe.errors import ComponentError, ModelWarning, warn
 from rockframe.motion import GroundMotion
 from rockframe.simulation.provenance import (
-    check_unswept_system,
-    description_by_names,
+    damage_reported,
     motion_from_dataset,
     parts_and_options,
+    system_text,
 )
 from rockframe.simulation.run_arguments import FOREIGN_ARGUMENTS, Certification
 from rockframe.solve.accuracy import AccuracyLevel
 from rockframe.suggestions import SuggestingMeta, suggests_names, with_hints
-from rockframe.system.assembly import Assembly, Scene, assemble
+from rockframe.system.assembly import Assembly, assemble
 from rockframe.system.options import (
     AccuracyLike,
     Coupling,
@@ -41,9 +41,6 @@ from rockframe.system.options import (
 from rockframe.system.parts import Parts
 from rockframe.system.setting import Setting
 from rockframe.units import ACCELERATION, ANGLE, Quantity, QuantityLike, quantity
-
-_DAMAGED: Final = (ValueError, KeyError, TypeError, AttributeError)
-"""Exceptions that a damaged description of a system may raise."""
 
 
 @suggests_names
@@ -92,7 +89,6 @@ class System(metaclass=SuggestingMeta):
     """
 
     __slots__ = ("_assembly",)
-
     _assembly: Assembly
 
     def __init__(
@@ -163,11 +159,6 @@ class System(metaclass=SuggestingMeta):
         return self.options.sliding
 
     @property
-    def scene(self) -> Scene:
-        """The row of the table of scenes that the parts make."""
-        return self._assembly.scene
-
-    @property
     def setting(self) -> Setting:
         """The scene's numbers in SI units."""
         return self._assembly.setting
@@ -179,13 +170,13 @@ class System(metaclass=SuggestingMeta):
         return hash(self._assembly)
 
     def __repr__(self) -> str:
-        hidden = {"gravity"} if self.scene.coupling else {"gravity", "coupling"}
+        hidden = {"gravity"} if self._assembly.scene.coupling else {"gravity", "coupling"}
         options = self.options.to_dict().items()
         arguments = [f"{name}={value!r}" for name, value in options if name not in hidden]
         return f"{type(self).__name__}({', '.join([*map(repr, self.parts), *arguments])})"
 
     def __dir__(self) -> list[str]:
-        inner = {"assembly", "scene", "setting"}  # for the package, and those who extend it
+        inner = {"assembly", "setting"}  # for the package, and those who extend it
         return [n for n in super().__dir__() if not n.startswith("_") and n not in inner]
 
     def _repr_html_(self) -> str:
@@ -461,13 +452,9 @@ class System(metaclass=SuggestingMeta):
         >>> rf.System.from_dict(system.to_dict()) == system
         True
         """
-        try:
-            value = description_by_names(description).get("motion")
-            motion = None if value is None else GroundMotion.from_dict(value)
-            return cls._described(description, motion)
-        except _DAMAGED as problem:
-            msg = f"this does not describe a system: {problem}"
-            raise SchemaError(msg) from problem
+        with damage_reported("this does not describe a system"):
+            parts, options = parts_and_options(description, signature(cls).parameters)
+            return cls(*parts, **options)
 
     @classmethod
     def from_dataset(cls, dataset: xr.Dataset) -> Self:
@@ -499,25 +486,11 @@ class System(metaclass=SuggestingMeta):
         >>> rf.System.from_dataset(run).motion.name
         'sine pulse, 2.5 m/s^2, 1 Hz, cycles: 1'
         """
-        dataset = checked_dataset(dataset, owner=f"{cls.__name__}.from_dataset")
-        check_unswept_system(dataset)
-        text = dataset.attrs.get("system_json")
-        if not isinstance(text, str):
-            msg = "the dataset has no attribute 'system_json'; expected a result of simulate()"
-            raise SchemaError(msg)
-        try:
-            return cls._described(json.loads(text), motion_from_dataset(dataset))
-        except _DAMAGED as problem:
-            reason = f"there is no {problem}" if isinstance(problem, KeyError) else problem
-            if isinstance(problem, json.JSONDecodeError):
-                reason = f"the JSON of system or motion is damaged ({problem})"
-            msg = f"the dataset's attributes do not describe a system: {reason}"
-            raise SchemaError(msg) from problem
-
-    @classmethod
-    def _described(cls, description: Mapping[str, Any], motion: GroundMotion | None) -> Self:
-        parts, options = parts_and_options(description, signature(cls).parameters)
-        return cls(*parts, *([] if motion is None else [motion]), **options)
+        text = system_text(checked_dataset(dataset, owner=f"{cls.__name__}.from_dataset"))
+        with damage_reported("the dataset's attributes do not describe a system"):
+            description, motion = json.loads(text), motion_from_dataset(dataset)
+            parts, options = parts_and_options(description, signature(cls).parameters)
+            return cls(*parts, *([] if motion is None else [motion]), **options)
 
 
 def check_system(value: object, owner: str) -> None:

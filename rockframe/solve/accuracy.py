@@ -149,25 +149,9 @@ def fastest_rate(model: ContactModel) -> float:
 
 
 def substeps_of(accuracy: Accuracy, model: ContactModel, interval: float) -> int:
-    """Return the number of fixed steps in each interval of a motion; 0 for steps by tolerance.
+    """Return the number of fixed steps in each interval [s] of a motion; 0 for steps by tolerance.
 
-    Parameters
-    ----------
-    accuracy : Accuracy
-        Settings.
-    model : ContactModel
-        The equations.
-    interval : float
-        Interval between samples of the motion [s].
-
-    Returns
-    -------
-    int
-
-    Raises
-    ------
-    SolverError
-        Steps of that length would not be stable.
+    Raises SolverError if steps of that length would not be stable.
     """
     if accuracy.substeps is None:
         return 0

@@ -169,31 +169,30 @@ def equations_of(
     )
 
 
+def _functions(equations: BoundEquations) -> list[BoundFunction]:
+    return [function for function in equations if isinstance(function, BoundFunction)]
+
+
 def runs_as_python(equations: BoundEquations) -> bool:
     """Whether a system runs as plain Python, as nothing is compiled or its equations cannot be."""
-    return not COMPILED or any(
-        function.source.failed for function in equations if isinstance(function, BoundFunction)
-    )
+    return not COMPILED or any(function.source.failed for function in _functions(equations))
 
 
 def is_fully_compiled(equations: BoundEquations) -> bool:
     """Whether all functions of a system are compiled, those called at events too."""
-    return all(
-        function.source.address for function in equations if isinstance(function, BoundFunction)
-    )
+    return all(function.source.address for function in _functions(equations))
 
 
 def compile_in_next_run(equations: BoundEquations) -> None:
     """Let the next run compile all functions: for measuring times."""
-    for function in equations:
-        if isinstance(function, BoundFunction):
-            function.source.fallback_seconds = math.inf
+    for function in _functions(equations):
+        function.source.fallback_seconds = math.inf
 
 
 def steps_are_compiled(equations: BoundEquations) -> bool:
     """Whether the functions that steps call are compiled."""
-    bounds = (function for function in equations if isinstance(function, BoundFunction))
-    return all(function.source.address or function.source.is_rarely_called for function in bounds)
+    sources = (function.source for function in _functions(equations))
+    return all(source.address or source.is_rarely_called for source in sources)
 
 
 @inlined

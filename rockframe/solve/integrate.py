@@ -105,11 +105,6 @@ def run_start(
     """Return the arrays of a run as they are before its first step.
 
     Arguments as of :func:`integrate`, and the `interval` between samples of the motion [s].
-
-    Raises
-    ------
-    SolverError
-        Fixed steps of that length would not be stable.
     """
     if isinstance(start, Start):
         mode, state, memory = model.initial(start)
@@ -311,33 +306,11 @@ def integrate(
     with_work: bool = False,
     keep_steps: bool = False,
 ) -> Trajectory:
-    """Integrate a model under a ground motion.
+    """Integrate a model under a ground motion; the status says whether the run was finished.
 
-    Parameters
-    ----------
-    model : ContactModel
-        The equations.
-    start : Start or Ending
-        Start of the run, or the end of another run of the same model, from which it continues.
-    motion : Motion or None
-        Motion of the ground, without acceleration after its last sample; None for still ground.
-    accuracy : Accuracy
-        Settings.
-    duration : float
-        Length of the run [s].
-    output_step : float or None
-        Spacing of the output samples; None stores none [s].
-    stop_at_overturning : bool
-        Whether the run ends when the rotation reaches its limit.
-    with_work : bool
-        Whether the works of dashpots and ground are stored at the output times.
-    keep_steps : bool
-        Whether the ends of all steps are kept; if there are very many, only the first ones.
-
-    Returns
-    -------
-    Trajectory
-        Also where the run could not be finished; see its status.
+    It starts anew, or where another run of the model ended. `duration` and the `output_step` of
+    the samples are in seconds; None stores no samples. Works of dashpots and ground are stored
+    `with_work`, and the ends of steps with `keep_steps`: of very many only the first ones.
     """
     run = run_start(
         model, start, accuracy, interval=STILL_INTERVAL if motion is None else motion.time_step,

@@ -177,31 +177,10 @@ def march(
     scheme: Scheme, system: StepEquations, unpacked: UnpackedMode, trial: float, pieces: Pieces,
     progress: Progress, steps: StepTable, arrays: StepArrays,
 ) -> int:  # fmt: skip
-    """Make steps until something happens that the driver must handle.
+    """Make steps until something happens that the driver must handle; return why, as ``AT_END``.
 
-    Parameters
-    ----------
-    scheme : Scheme
-        The method of a step.
-    system : Evaluated
-        The equations.
-    known : KnownMode
-        The mode and its meaning.
-    trial : float
-        Length of a single trial step; 0 to continue with the run [s].
-    pieces : Pieces
-        Polynomials of the ground acceleration.
-    progress : Progress
-        Settings and progress; ``counters[HALF]`` tells which half of ``ends`` is the start.
-    steps : StepTable
-        Table of steps.
-    arrays : StepArrays
-        Arrays of a step.
-
-    Returns
-    -------
-    int
-        Why it ended, such as ``AT_END``.
+    `trial` is the length of a single trial step, or 0 to continue with the run [s].
+    ``progress.counters[HALF]`` tells which half of ``arrays.ends`` is the start of the next step.
     """
     mode, count = unpacked.mode, unpacked.moving
     controls, clock, counters = progress.controls, progress.clock, progress.counters

@@ -224,27 +224,10 @@ def observe_states(
     memory_row: Integers,
     ground: Matrix,
 ) -> dict[str, Vector]:
-    """Return the model's columns for any states.
+    """Return the model's columns by their names for any states, one in each row of `state`.
 
-    Parameters
-    ----------
-    model : ContactModel
-        The equations.
-    mode : ndarray of int64, shape (states,)
-        Modes of the model.
-    state : ndarray, shape (states, 2 n + variables)
-        States of the system.
-    memory : ndarray, shape (memories, memory)
-        Memories of the system.
-    memory_row : ndarray of int, shape (states,)
-        Row of `memory` that belongs to each state.
-    ground : ndarray, shape (states, 2)
-        Horizontal and vertical ground acceleration [m s^-2].
-
-    Returns
-    -------
-    dict of str to ndarray
-        By the names in ``model.columns``.
+    `memory_row` is the row of `memory` that belongs to each state, `ground` the horizontal and
+    vertical ground acceleration, shape (states, 2) [m s^-2].
     """
     return _named(model, model.columns, _rows(model, mode, state, memory, memory_row, ground))
 
@@ -289,29 +272,9 @@ def observe_run(
 ) -> tuple[dict[str, Vector], dict[str, Vector]]:
     """Return some columns along the steps of a run, and all columns at its samples and events.
 
-    Parameters
-    ----------
-    model : ContactModel
-        The equations.
-    run : Trajectory
-        A run that kept its steps.
-    names : tuple of str or None
-        Columns to give along the steps; None for all.
-    ground : ndarray, shape (samples + 2 events, 2)
-        Horizontal and vertical ground acceleration at the output times, and twice at the events
-        [m s^-2].
-
-    Returns
-    -------
-    along : dict of str to ndarray, shape (rows,)
-        Values at the rows of the table of steps.
-    shown : dict of str to ndarray, shape (samples + 2 events,)
-        Values at the output times, then before all events, then after all events.
-
-    Raises
-    ------
-    ValueError
-        The run has not kept its steps.
+    The first are those of `names`, or all for None, at the rows of the table of steps. The others
+    are at the output times, then before all events, then after them; so is `ground`, the horizontal
+    and vertical ground acceleration, shape (samples + 2 events, 2) [m s^-2].
     """
     steps, events, in_steps = run.kept_steps, run.events, run.outputs_in_steps
     memory, row = memory_at_outputs(run)
@@ -348,13 +311,7 @@ def _named(model: ContactModel, columns: Sequence[Column], out: Matrix) -> dict[
 
 
 def energies_of(model: ContactModel, trajectory: Trajectory) -> Matrix:
-    """Return kinetic, gravity and elastic energy, and elastic energy less that at rest.
-
-    Returns
-    -------
-    ndarray, shape (samples, 4)
-        Per unit mass [m^2 s^-2].
-    """
+    """Return kinetic, gravity, elastic energy, and elastic less at rest, by columns [m^2 s^-2]."""
     out = np.empty((len(trajectory.time), 4))
     energy_rows(
         _system_function(model.system, evaluate_energies),

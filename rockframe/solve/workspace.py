@@ -10,14 +10,7 @@ from typing import Final, NamedTuple
 
 import numpy as np
 
-from rockframe.compiled import (
-    IntegerMatrix,
-    Integers,
-    Matrix,
-    ReadOnlyMatrix,
-    Vector,
-    inlined,
-)
+from rockframe.compiled import IntegerMatrix, Integers, Matrix, ReadOnlyMatrix, Vector, inlined
 from rockframe.dynamics.protocol import Ground
 
 

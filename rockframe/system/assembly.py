@@ -21,7 +21,8 @@ from rockframe.system.compatibility import (
     SLIDING_AT_SMALL_ROTATION,
     base_friction,
     combination_faults,
-    depth_and_point_cautions,
+    depth_cautions,
+    outside_point_cautions,
     size_faults,
     unused_option_cautions,
 )
@@ -90,26 +91,18 @@ def _single_body(slot: str, parts: Parts, options: Options) -> SingleBodySetting
     return SlidingBodySetting(held.load, held.support, friction, cap_offset=held.cap_offset)
 
 
-def _refuse_shared_columns(
-    parts: Parts, upper: SingleBodySetting, lower: SingleBodySetting
-) -> None:
-    """Refuse two bases with a column of the same name: one column would be lost."""
-    names = [
-        {column.name for column in body.support.base_numbers.columns} for body in (upper, lower)
-    ]
-    shared = sorted(names[0] & names[1])
-    if shared:
-        pads, soil = (type(parts[slot]).__name__ for slot in ("pads", "soil"))
-        fault = f"{pads} and {soil} both show {' and '.join(shared)}; give those of one other names"
-        raise AssemblyError([fault])
-
-
 def _block_on_cap(
     kind: type[BlockOnCapSetting], parts: Parts, options: Options
 ) -> BlockOnCapSetting:
-    """Put a block on pads on a cap on soil."""
+    """Put a block on pads on a cap on soil; of two columns of the same name one would be lost."""
     upper, lower = (_block_on_base(slot, parts, options) for slot in ("pads", "soil"))
-    _refuse_shared_columns(parts, upper, lower)
+    pads, soil = (
+        {column.name for column in body.support.base_numbers.columns} for body in (upper, lower)
+    )
+    if shared := sorted(pads & soil):
+        both = " and ".join(type(parts[slot]).__name__ for slot in ("pads", "soil"))
+        fault = f"{both} both show {' and '.join(shared)}; give those of one other names"
+        raise AssemblyError([fault])
     return kind(upper.load, upper, lower, parts.cap_si)
 
 
@@ -177,11 +170,7 @@ _BUILTIN_SCENES: Final = (
         rocking_frame_setting,
     ),
     Scene("Stack (on rigid ground)", frozenset({"stack"}), partial(_stack, "ground")),
-    Scene(
-        "Stack + TwoSpringSupport",
-        frozenset({"stack", "pads"}),
-        partial(_stack, "pads"),
-    ),
+    Scene("Stack + TwoSpringSupport", frozenset({"stack", "pads"}), partial(_stack, "pads")),
     Scene("Stack + WinklerSoil", frozenset({"stack", "soil"}), partial(_stack, "soil")),
     *(
         Scene(
@@ -234,8 +223,7 @@ def scene_of_same_parts(kind: type[OwnScene]) -> str | None:
 def _user_scene(kind: type[OwnScene], parts: Parts, options: Options) -> OwnScene:
     """Make the setting of a user-defined scene."""
     setting = kind(load_of(parts.block_si, options), parts)
-    faults = setting.misfits()
-    if faults:
+    if faults := setting.misfits():
         raise AssemblyError(faults)
     return setting
 
@@ -264,7 +252,8 @@ class Assembly:
         """Warnings about the scene."""
         return [
             *self.setting.cautions(),
-            *depth_and_point_cautions(self.parts),
+            *outside_point_cautions(self.parts),
+            *depth_cautions(self.parts),
             *unused_option_cautions(self.parts, self.options),
         ]
 

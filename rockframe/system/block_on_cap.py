@@ -21,7 +21,7 @@ from rockframe.system.compatibility import NO_SLIP, BaseFriction
 from rockframe.system.options import restraint_words
 from rockframe.system.setting import Setting, SlipRange, Words, chain_slips, sliding_words
 from rockframe.system.single_body import SingleBodySetting
-from rockframe.system.sliding_stack import overhang_caution
+from rockframe.system.sliding_stack import overhang_cautions
 from rockframe.system.statics import SmallMotion, StandingBodies, Statics, static_values
 from rockframe.system.support import BaseWords, Support
 
@@ -220,7 +220,7 @@ class SlidingCoupledSetting(CoupledSetting):
     def words(self) -> Words:
         """Describe block, cap and soil, and their friction."""
         return sliding_words(super().words(), *(
-            (f"{name}: friction at rest, and of slip", friction.words())
+            friction.row(f"{name}: ")
             for name, friction in zip(("pads", "soil"), self.frictions, strict=True)
             if friction != NO_SLIP
         ))  # fmt: skip
@@ -242,8 +242,7 @@ class SlidingCoupledSetting(CoupledSetting):
     def beyond_edges(self, ending: Ending) -> list[str]:
         """Warn of a block that slipped beyond the edge of its cap."""
         slips, widths = self.slips_of(ending)[0], (self.body.half_width, self.cap.half_width)
-        caution = overhang_caution(slips, 0.0, *widths, self.sliding_bodies)
-        return [caution] if caution else []
+        return overhang_cautions(slips, 0.0, *widths, self.sliding_bodies)
 
 
 class CascadeSetting(BlockOnCapSetting):

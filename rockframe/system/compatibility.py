@@ -46,13 +46,10 @@ def combination_faults(parts: Parts) -> list[str]:
         faults += _frame_faults(parts)
     elif block is None:
         faults.append("no Block is given")
-    if parts.ground is not None:
-        others = [type(part).__name__ for part in (pads, cap, soil) if part is not None]
-        if others:
-            faults.append(
-                f"RigidGround and {' and '.join(others)} are both given; rigid ground carries a "
-                "block directly"
-            )
+    if parts.ground is not None and (others := _class_names(pads, cap, soil)):
+        faults.append(
+            f"RigidGround and {others} are both given; rigid ground carries a block directly"
+        )
     if parts.wall is not None and not parts.wall.elastic:
         faults += _stiff_wall_faults(parts.wall, parts)
     if parts.links and parts.frame is None:
@@ -70,19 +67,20 @@ def combination_faults(parts: Parts) -> list[str]:
     return faults
 
 
+def _class_names(*parts: Component | None) -> str:
+    """Join the names of the classes of those parts that there are."""
+    return " and ".join(type(part).__name__ for part in parts if part is not None)
+
+
 def _stiff_wall_faults(wall: RearWall, parts: Parts) -> list[str]:
     """Return the faults of a stiff wall with other parts: its laws are impacts on rigid ground."""
     base = parts.pads or parts.soil
-    excluded = (parts.pads, parts.soil, parts.cap, parts.stack, parts.frame, *parts.links)
-    others = [type(part).__name__ for part in excluded if part is not None]
+    others = _class_names(parts.pads, parts.soil, parts.cap, parts.stack, parts.frame, *parts.links)
     if not others:
         if wall.si.on_body == 1:
             return []
         return [f"RearWall: there is no body {wall.si.on_body}; the wall stands behind one Block"]
-    fault = (
-        f"a RearWall and {' and '.join(others)} are both given; a wall stands behind a Block on "
-        "rigid ground"
-    )
+    fault = f"a RearWall and {others} are both given; a wall stands behind a Block on rigid ground"
     if parts.frame is not None or parts.cap is not None:
         return [fault]
     yields = "give the wall a stiffness and a damping in place of its law"
@@ -104,7 +102,7 @@ def _stiff_wall_faults(wall: RearWall, parts: Parts) -> list[str]:
 def _link_faults(parts: Parts) -> list[str]:
     """Return the faults of links with other parts."""
     faults: list[str] = []
-    base = next((part for part in (parts.pads, parts.soil) if part is not None), None)
+    base = parts.pads or parts.soil
     if parts.cap is not None:
         kinds = " and a ".join(dict.fromkeys(type(part).__name__ for part in parts.links))
         faults.append(
@@ -134,15 +132,15 @@ def _frame_faults(parts: Parts) -> list[str]:
         for name, usual in (("at", 0.0), ("depth", 0.0), ("on_body", 1))
         if isinstance(part, Tendon) and getattr(part.si, name) != usual
     ]
-    others = [
-        type(part).__name__
+    others = _class_names(*(
+        part
         for slot, part in parts.components.items()
         if slot not in ("frame", "ground") and not isinstance(part, Tendon)
-    ]
+    ))  # fmt: skip
     if others:
         faults.append(
-            f"a RockingFrame and {' and '.join(others)} are both given; a RockingFrame stands on "
-            "rigid ground, with nothing else but tendons"
+            f"a RockingFrame and {others} are both given; a RockingFrame stands on rigid ground, "
+            "with nothing else but tendons"
         )
     return faults
 
@@ -155,7 +153,7 @@ def _stack_faults(stack: Stack, parts: Parts) -> list[str]:
         faults.append(f"a Stack and a {name} are both given; the {name} is one of its bodies")
     if parts.cap is not None:
         faults.append("a Stack and a CushionCap are both given; give the cap as its lowest body")
-    bases = [part for part in (parts.pads, parts.soil, parts.ground) if part is not None]
+    bases = [parts.components[slot] for slot in BASE_SLOTS if slot in parts.components]
     if parts.pads is not None and parts.soil is not None and parts.cap is None:
         faults.append("a Stack stands on a TwoSpringSupport or on a WinklerSoil: give one of them")
     standing = (*stack.interfaces, *bases)
@@ -173,8 +171,8 @@ def _stack_faults(stack: Stack, parts: Parts) -> list[str]:
     return faults
 
 
-def depth_and_point_cautions(parts: Parts) -> list[str]:
-    """Warn of depths that differ, and of links outside their bodies, which can be simulated."""
+def depth_cautions(parts: Parts) -> list[str]:
+    """Warn of depths that differ, which can be simulated."""
     depths: dict[str, float] = {}  # depth with which each was made, where it is known
     for part in (parts.cap or parts.block, parts.soil):
         # without this a component without a depth would look for names like it
@@ -182,12 +180,10 @@ def depth_and_point_cautions(parts: Parts) -> list[str]:
         depth = getattr(part, "depth", None) if known else None
         if depth is not None:
             depths[type(part).__name__] = float(depth.m_as("m"))
-    outside = _outside_point_cautions(parts) if parts.links else []
     if len(depths) < 2 or math.isclose(*depths.values(), rel_tol=_DEPTH_TOLERANCE):
-        return outside
+        return []
     (upper, above), (lower, below) = depths.items()
     return [
-        *outside,
         f"the {lower} was built for a base of a depth of {below:.6g} m, but the {upper} on it is "
         f"{above:.6g} m deep: its stiffness is the subgrade modulus times that depth",
     ]
@@ -200,7 +196,7 @@ def _linked_bodies(parts: Parts) -> tuple[BlockSI, ...]:
     return () if parts.block is None else (parts.block.si,)
 
 
-def _outside_point_cautions(parts: Parts) -> list[str]:
+def outside_point_cautions(parts: Parts) -> list[str]:
     """Warn of links at points that are above or below their bodies, or far beside them.
 
     A bracket or the arm of a statue may reach beyond the base, by no more than the body's height.
@@ -257,26 +253,23 @@ def _tendon_and_wall_faults(parts: Parts) -> list[str]:
 
 def unused_option_cautions(parts: Parts, options: Options) -> list[str]:
     """Warn of options that have no effect in a scene of these parts."""
-    messages: list[str] = []
     between = () if parts.stack is None else parts.stack.interfaces
     bases = (*parts.structural(), *between)
-    if options.coupling is not Coupling.COUPLED and not {"pads", "cap", "soil"} <= parts.signature:
-        messages.append(
-            f"coupling={str(options.coupling)!r} changes nothing here: it joins pads, a "
-            "CushionCap and soil, and the scene does not have all of them"
-        )
     yielding = any(slot_of_class(type(part)) in ("pads", "soil") for part in bases)
-    if options.restraint is not Restraint.CONTACT_STATE and not yielding and not parts.own:
-        messages.append(
-            f"restraint={str(options.restraint)!r} changes nothing here: on rigid ground the "
-            "bearing corner is held"
-        )
     has_friction = any(getattr(part.si, "friction", None) is not None for part in bases)
-    if options.sliding is Sliding.CHECKED and not has_friction and not parts.own:
-        messages.append(
-            f"sliding={str(options.sliding)!r} changes nothing here: no base has a friction that "
-            "could be compared with what is needed"
-        )
+    options_at_work = (  # name, default, whether the scene uses it, and why it does not
+        ("coupling", Coupling.COUPLED, {"pads", "cap", "soil"} <= parts.signature,
+         "it joins pads, a CushionCap and soil, and the scene does not have all of them"),
+        ("restraint", Restraint.CONTACT_STATE, yielding or parts.own,
+         "on rigid ground the bearing corner is held"),
+        ("sliding", Sliding.COMPUTED, has_friction or parts.own,
+         "no base has a friction that could be compared with what is needed"),
+    )  # fmt: skip
+    messages = [
+        f"{name}={str(getattr(options, name))!r} changes nothing here: {why}"
+        for name, default, used, why in options_at_work
+        if getattr(options, name) is not default and not used
+    ]
     for name, link in parts.named_links:
         if not isinstance(link, Restrainer | Tendon) or link.si.strength is not None:
             continue
@@ -296,12 +289,11 @@ class BaseFriction(NamedTuple):
     kinetic: float
     impulsive: float
 
-    def words(self) -> str:
-        """Return the coefficients at rest and of slip in words."""
-        if math.isinf(self.static):
-            return "held"
+    def row(self, base: str = "") -> tuple[str, str]:
+        """Return a name for the coefficients, after that of their base, and the coefficients."""
         sticks = ", held in impacts" if math.isinf(self.impulsive) else ""
-        return f"{self.static:.6g}, {self.kinetic:.6g}{sticks}"
+        words = f"{self.static:.6g}, {self.kinetic:.6g}{sticks}"
+        return f"{base}friction at rest, and of slip", "held" if math.isinf(self.static) else words
 
 
 NO_SLIP: Final = BaseFriction(math.inf, math.inf, math.inf)
@@ -328,8 +320,7 @@ def _block_slides(parts: Parts, options: Options) -> bool:
     """Whether a block slides on what it stands on."""
     behind_wall = parts.wall is not None and not parts.wall.elastic
     of_stages = parts.cap is not None and options.coupling is Coupling.CASCADE
-    bases = (parts.components.get(slot) for slot in ("pads", "soil", "ground"))
-    under = next((base for base in bases if base is not None), None)
+    under = parts.pads or parts.soil or parts.ground
     slippery = under is not None and base_friction(under, options) is not None
     return slippery and not (behind_wall or of_stages)
 

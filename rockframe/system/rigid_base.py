@@ -6,10 +6,10 @@ from typing import NamedTuple, cast
 
 from rockframe.dynamics.body_statics import Pose
 from rockframe.dynamics.equilibrium import ChainEquilibrium, EquilibriumPath
-from rockframe.dynamics.link_statics import LinkForce, links_at_rest, links_of_rocking_bodies
+from rockframe.dynamics.link_statics import LinkForce, links_of_rocking_bodies
 from rockframe.system.stacked_bodies import StackedBodies
 from rockframe.system.statics import StandingBodies, Statics, work_against
-from rockframe.system.support import REACTIONS
+from rockframe.system.support import corner_reactions
 
 
 class RigidBaseLoad(NamedTuple):
@@ -21,7 +21,7 @@ class RigidBaseLoad(NamedTuple):
     shear: float  # force of links on the bodies above, to the right, that the base must resist [N]
 
 
-def rigid_base_load(setting: StackedBodies, k: int, tied: Sequence[LinkForce]) -> RigidBaseLoad:
+def rigid_base_load(setting: StackedBodies, k: int) -> RigidBaseLoad:
     """Return the load on the rigid base under body `k`, :eq:`eq-link-rest`.
 
     It carries all bodies above it, and the forces of links on them in the upright position.
@@ -30,7 +30,7 @@ def rigid_base_load(setting: StackedBodies, k: int, tied: Sequence[LinkForce]) -
     normal, couple, shear = load.weight, 0.0, 0.0
     x_base, y_base = setting.base_of(k)
     x_centre = x_base + load.body.eccentricity
-    for link, pull in zip(setting.links, tied, strict=True):
+    for link, pull in zip(setting.links, setting.links_at_rest, strict=True):
         for body, end, sign in ((link.on, link.ends[0], -1.0), (link.to, link.ends[1], 1.0)):
             if 0 <= body <= k:
                 x, y = sign * setting.body.mass * pull.force * pull.direction
@@ -55,12 +55,12 @@ class UpliftLimits(NamedTuple):
         return f"{left} to the right, which tips it to the left, or {right} to the left"
 
 
-def uplift_limits(setting: StackedBodies, k: int, tied: Sequence[LinkForce]) -> UpliftLimits:
+def uplift_limits(setting: StackedBodies, k: int) -> UpliftLimits:
     """Return the uplift limits of the rigid base under body `k`, with link forces at rest.
 
     Without links it is :eq:`eq-rigid-together`, and the friction b/h.
     """
-    load, body = rigid_base_load(setting, k, tied), setting.bases[k].load.body
+    load, body = rigid_base_load(setting, k), setting.bases[k].load.body
     left, right = load.left_limit / body.centre_height, load.right_limit / body.centre_height
     needed = min(abs(left - load.shear), abs(right + load.shear))
     return UpliftLimits(left / body.mass, right / body.mass, needed / load.normal)
@@ -94,16 +94,15 @@ def rocking_statics(setting: StackedBodies, rotation: float) -> Statics:
     """Return the equilibrium on rigid bases only: all bodies above the weakest base rock."""
     right, mass = rotation > 0.0, setting.body.mass
     side = 1.0 if right else -1.0
-    tied = links_at_rest(setting.chain_links)
     capacities = [
         load.right_limit if right else load.left_limit
-        for load in (rigid_base_load(setting, j, tied) for j in range(len(setting.bases)))
+        for load in (rigid_base_load(setting, j) for j in range(len(setting.bases)))
     ]
     k = capacities.index(min(capacities))
     (middle, pivot_level), half_width = setting.base_of(k), setting.bases[k].load.body.half_width
     corner = middle + side * half_width
     sine, versine = math.sin(abs(rotation)), 2.0 * math.sin(0.5 * rotation) ** 2
-    moment = 0.0
+    moment, tied = 0.0, setting.links_at_rest
     if rotation != 0.0:
         moment, tied = rocking_moment(setting, k, rotation)
     # rise of the highest centre of mass; moment of all weights about the middle of the lowest base
@@ -129,8 +128,8 @@ def rocking_statics(setting: StackedBodies, rotation: float) -> Statics:
     reactions = (0.5 * (down - shift), 0.5 * (down + shift))
     if rotation != 0.0:
         reactions = (0.0, down) if right else (down, 0.0)
-    shown: dict[str, float] = dict(zip(REACTIONS, map(float, reactions), strict=True))
-    return Statics(rise, float(base_moment), float(moment), state, shown if single else {})
+    shown = corner_reactions(*map(float, reactions)) if single else {}
+    return Statics(rise, float(base_moment), float(moment), state, shown)
 
 
 def statics_beyond_uplift(

@@ -12,7 +12,7 @@ from rockframe.errors import AssemblyError
 from rockframe.system.bodies import ROUNDING, Restitutions, restitution_cautions
 from rockframe.system.setting import Setting, Words
 from rockframe.system.statics import Statics, static_values
-from rockframe.system.support import REACTIONS
+from rockframe.system.support import corner_reactions
 from rockframe.units import angle_words
 
 
@@ -121,13 +121,7 @@ class RigidGroundSetting(Setting):
         if rotation == 0.0:
             # the moments of weight and reactions about the middle of the base
             moment = weight * body.eccentricity - thrust * body.centre_height
-            return Statics(
-                0.0,
-                body.base_ratio * moment,
-                0.0,
-                "full",
-                dict(zip(REACTIONS, self.rest_reactions, strict=True)),
-            )
+            return Statics(0.0, body.base_ratio * moment, 0.0, "full", self.rest_reactions)
         side = math.copysign(1.0, rotation)
         theta, lean = body.overturning_angles.on_side_of(rotation), abs(rotation)
         beside = side * body.eccentricity
@@ -141,28 +135,27 @@ class RigidGroundSetting(Setting):
             weight_arm = body.centre_height * sin(lean) + beside * cos(lean)
             thrust_arm = radius * cos(theta - lean)
         moment = side * weight * radius * restoring
-        reactions = (0.0, weight) if side > 0.0 else (weight, 0.0)
+        left, right = (0.0, weight) if side > 0.0 else (weight, 0.0)
         return Statics(
             vertical_displacement=rise,
             base_moment=body.base_ratio * (moment + side * weight * weight_arm),
             restoring_moment=moment + thrust * thrust_arm,
             contact_state="right" if side > 0.0 else "left",
-            reactions=dict(zip(REACTIONS, reactions, strict=True)),
+            reactions=corner_reactions(left, right),
         )
 
     def equilibrium(self) -> dict[str, float]:
         """Return the reactions at rest and the moment at uplift, by their names in the schema."""
         uplift = self.load.weight * self.body.half_width * self.body.base_ratio
-        rest_reactions = dict(zip(REACTIONS, self.rest_reactions, strict=True))
-        return {"uplift_moment": uplift, **static_values(rest_reactions)}
+        return {"uplift_moment": uplift, **static_values(self.rest_reactions)}
 
     @property
-    def rest_reactions(self) -> tuple[float, float]:
-        """Reactions of the left and of the right corner at rest [N]."""
+    def rest_reactions(self) -> dict[str, float]:
+        """Reactions of both corners at rest, by their names in the schema [N]."""
         (left, right), half = self.corner_tangents, 0.5 * self.load.weight
         tilt = half * (left - right) / (left + right)
         shift = tilt - self.load.thrust / (left + right)
-        return half - shift, half + shift
+        return corner_reactions(half - shift, half + shift)
 
     def words(self) -> Words:
         """Describe the block on rigid ground."""

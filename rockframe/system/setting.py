@@ -93,17 +93,10 @@ def sliding_words(held: Words, *frictions: tuple[str, str], restraint: str | Non
 
 @dataclass(frozen=True)
 class Setting(ABC):
-    """A scene: numbers in SI units, words, and the model that they lead to.
+    """A scene: numbers in SI units, words, and the model that they lead to."""
 
-    Parameters
-    ----------
-    load : BaseLoad
-        The body whose response results give, with the options of its system.
-    cap_offset : float, optional
-        Height of a cap's centre above that of the body, where a cap is part of the body [m].
-    """
-
-    load: BaseLoad
+    load: BaseLoad  # the body whose response results give, with the options of its system
+    # height of a cap's centre above that of the body, where a cap is part of the body [m]
     cap_offset: float | None = field(default=None, kw_only=True)
     # body and options of the load; gravity [m s^-2], and the inclined base with its gravity
     body: SupportedBody = field(init=False, repr=False, compare=False)

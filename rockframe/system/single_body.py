@@ -112,8 +112,7 @@ class SlidingBodySetting(SingleBodySetting):
         """Describe the base, and the friction that holds the body on it."""
         held = super().words()
         restraint = f"{held.restraint.partition(';')[0]}; as far as friction can"
-        friction = ("friction at rest, and of slip", self.friction.words())
-        return sliding_words(held, friction, restraint=restraint)
+        return sliding_words(held, self.friction.row(), restraint=restraint)
 
     def contact_model(self) -> ContactModel:
         """Return the equations of slip, rotation and rise: those of a chain of one body."""

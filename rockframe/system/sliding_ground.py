@@ -91,7 +91,7 @@ class SlidingSetting(RigidGroundSetting):
             restraint=HELD_BY_FRICTION,
             numbers=[
                 *base.numbers[:-1],
-                ("friction at rest, and of slip", self.friction.words()),
+                self.friction.row(),
                 ("friction to land without slip", f"{friction_to_roll_over(self.body):.6g}"),
                 ("restitution eps", "lands flat" if self.lands_flat else self.restitution.words()),
             ],

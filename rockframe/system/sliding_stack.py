@@ -49,15 +49,10 @@ class SlidingStackSetting(StackSetting):
         """Name of the model."""
         return f"{super().model}-sliding"
 
-    def cautions(self) -> list[str]:
-        """Return warnings, also about bodies that slide at rest under their restrainers."""
-        names = [f"body {k}" for k in range(1, len(self.bodies) + 1)]
-        return [*super().cautions(), *self.rest_slip_cautions(*names)]
-
     def words(self) -> Words:
         """Describe bodies, bases and friction."""
         return sliding_words(super().words(), *(
-            (f"base {k}: friction at rest, and of slip", friction.words())
+            friction.row(f"base {k}: ")
             for k, friction in enumerate(self.frictions, 1)
         ))  # fmt: skip
 
@@ -68,42 +63,38 @@ class SlidingStackSetting(StackSetting):
     def beyond_edges(self, ending: Ending) -> list[str]:
         """Warn of bodies that slipped beyond an edge of the body below, which is not modelled."""
         pairs = zip(self.bodies, self.bodies[1:], self.offsets, self.slips_of(ending), strict=False)
-        cautions = (
-            overhang_caution(
+        return [
+            text
+            for k, (upper, lower, offset, slips) in enumerate(pairs, 1)
+            for text in overhang_cautions(
                 slips, offset, upper.half_width, lower.half_width, (f"body {k}", f"body {k + 1}")
             )
-            for k, (upper, lower, offset, slips) in enumerate(pairs, 1)
-        )
-        return [text for text in cautions if text]
+        ]
 
 
-def overhang_caution(
+def overhang_cautions(
     slips: SlipRange, offset: float, upper: float, lower: float, names: Sequence[str]
-) -> str:
-    """Warn of a body that slipped beyond an edge of the one below; empty if it did not.
-
-    `upper` and `lower` are half the widths of both [m].
-    """
+) -> list[str]:
+    """Warn of a body that slipped beyond an edge of the one below; half widths of both [m]."""
     overhang = max(slips.right + offset, slips.left - offset) - (lower - upper)
     if overhang <= MIN_OVERHANG * upper:
-        return ""
-    return (
+        return []
+    return [
         f"{names[0]} slides {overhang:.3g} m beyond the edge of {names[1]}, whose top goes "
         "on without end in the model: it would tip about that edge sooner"
-    )
+    ]
 
 
 def sliding_stack_setting(bases: Sequence[Component], held: StackSetting) -> StackSetting:
     """Return the setting of stacked bodies: one with slip where bases have friction."""
     slips = any(getattr(one.si, "friction", None) is not None for one in bases)
     _refuse_many_modes(bases, slips)
-    if not slips:
+    checked = held.options.sliding is Sliding.CHECKED
+    if not slips or (checked and len(held.bodies) == 1):
         return held
     frictions = [base_friction(one, held.options) for one in bases]
     faults = list[str]()
-    if held.options.sliding is Sliding.CHECKED and len(held.bodies) == 1:
-        return held
-    if held.options.sliding is Sliding.CHECKED:
+    if checked:
         faults.append("friction in a Stack is computed: give no sliding='checked', or no friction")
     elif any(held.rigid):
         faults += sheared_tendon_faults(held)
@@ -188,16 +179,12 @@ class SlidingRestrainedSetting(RestrainedSetting):
         """Name of the model."""
         return "rigid-restrained-sliding"
 
-    def cautions(self) -> list[str]:
-        """Return warnings, also about a block that slides at rest under its restrainers."""
-        return [*super().cautions(), *self.rest_slip_cautions("the block")]
-
     def words(self) -> Words:
         """Describe the block, its links and its friction."""
         text = super().words()
         slides = sliding_words(
             text,
-            ("friction at rest, and of slip", self.friction.words()),
+            self.friction.row(),
             ("friction to land without slip", f"{friction_to_roll_over(self.body):.6g}"),
             restraint=HELD_BY_FRICTION,
         )

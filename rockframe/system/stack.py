@@ -9,14 +9,9 @@ from typing import TYPE_CHECKING, Any, Final
 from rockframe.components import Component, Link, Load, Tendon
 from rockframe.components.block_numbers import BlockSI
 from rockframe.dynamics.body_statics import Pose
-from rockframe.dynamics.link_statics import LinkForce, links_at_rest
 from rockframe.dynamics.protocol import ContactModel
 from rockframe.errors import AssemblyError
-from rockframe.system.bodies import (
-    BaseLoad,
-    block_body,
-    with_point_mass,
-)
+from rockframe.system.bodies import BaseLoad, block_body, with_point_mass
 from rockframe.system.links import place_links
 from rockframe.system.options import Options, restraint_words
 from rockframe.system.parts import support_of
@@ -30,7 +25,7 @@ from rockframe.system.rigid_base import (
 from rockframe.system.setting import FRICTION_TO_ROCK, Words
 from rockframe.system.stacked_bodies import StackedBodies, combined_body
 from rockframe.system.statics import SmallMotion, Statics, static_values
-from rockframe.system.support import REACTIONS, RigidBase
+from rockframe.system.support import RigidBase, corner_reactions
 
 if TYPE_CHECKING:
     from rockframe.dynamics.chain.model import AtRest
@@ -52,12 +47,13 @@ class StackSetting(StackedBodies):
             return f"{self.bases[0].model}-restrained"
         return "stack-restrained" if self.links else "stack"
 
-    def rest_slip_cautions(self, *names: str) -> list[str]:
-        """Warn of bodies on rigid bases, with these names, that slide at rest under their links."""
+    def _rest_slip_cautions(self) -> list[str]:
+        """Warn of bodies on rigid bases that slide at rest under their links."""
         cautions = list[str]()
-        for k, (name, friction) in enumerate(zip(names, self.frictions, strict=True)):
+        for k, friction in enumerate(self.frictions):
             if self.rigid[k] and math.isfinite(friction.static):
-                load = rigid_base_load(self, k, self._link_states_at_rest)
+                load = rigid_base_load(self, k)
+                name = "the block" if len(self.bodies) == 1 else f"body {k + 1}"
                 if abs(load.shear) > friction.static * load.normal:
                     cautions.append(
                         f"{name} slides under its restrainers and loads: at rest it needs a "
@@ -72,13 +68,13 @@ class StackSetting(StackedBodies):
         return tuple(link.name for link in self.links if not isinstance(link.part, Load))
 
     def cautions(self) -> list[str]:
-        """Return the warnings of all bases, each with the number of the body on it."""
+        """Return the warnings of all bases, each with the number of the body on it, and of slip."""
         cautions = [
             f"under body {k}: {text}" if len(self.bodies) > 1 else text
             for k, base in enumerate(self.bases, 1)
             for text in base.cautions()
         ]
-        return [*cautions, *self._lean_cautions()]
+        return [*cautions, *self._lean_cautions(), *self._rest_slip_cautions()]
 
     def friction_to_rock(self) -> dict[str, float]:
         """Return the friction to rock of all bodies above each base, as one.
@@ -94,7 +90,7 @@ class StackSetting(StackedBodies):
             if not self.links:
                 frictions[f"{name} b/h"] = min(body.left, body.right) / body.centre_height
             elif rigid:
-                frictions[name] = uplift_limits(self, k, self._link_states_at_rest).friction
+                frictions[name] = uplift_limits(self, k).friction
         return frictions
 
     def words(self) -> Words:
@@ -106,7 +102,7 @@ class StackSetting(StackedBodies):
             size = f"{2.0 * body.half_width:.6g} m wide, centre of mass {body.centre_height:.6g} m"
             numbers.append((f"body {k}", f"{size} above its base, {body.mass:.6g} kg"))
             if self.rigid[k - 1]:
-                starts = uplift_limits(self, k - 1, self._link_states_at_rest).words()
+                starts = uplift_limits(self, k - 1).words()
                 numbers.append((f"base {k}: rigid, all above rocks as one at xg'' of", starts))
             numbers += [(f"base {k}: {name}", words) for name, words in of_base.numbers]
             left_out += [one for one in of_base.left_out if one not in left_out]
@@ -142,7 +138,7 @@ class StackSetting(StackedBodies):
         for k, rigid in enumerate(self.rigid):
             if not rigid:
                 continue
-            load = rigid_base_load(self, k, self._link_states_at_rest)
+            load = rigid_base_load(self, k)
             done = None
             if load.normal <= 0.0:
                 done = f"lift body {k + 1}"
@@ -228,31 +224,24 @@ class StackSetting(StackedBodies):
         """Return the values of links and, of a single body, of its base at rest, by names."""
         values = dict[str, Any]()
         if len(self.bodies) == 1 and not self.groups:
-            load = rigid_base_load(self, 0, self._link_states_at_rest)
+            load = rigid_base_load(self, 0)
             left, right = self.body.left, self.body.right
             reactions = (load.right_limit / (left + right), load.left_limit / (left + right))
             values = {
                 "uplift_moment": load.normal * self.body.half_width,
-                **static_values(dict(zip(REACTIONS, reactions, strict=True))),
+                **static_values(corner_reactions(*reactions)),
             }
         elif len(self.bodies) == 1:
             base, shown = self.bases[0], self.standing.reactions(self._rest)
             values = {base.settlement_name: base.settlement, **static_values(shown)}
         if not self.link_names:
             return values
-        tied = self._link_states_at_rest[: len(self.link_names)]
+        tied = self.links_at_rest[: len(self.link_names)]
         return values | {
             "restrainer": list(self.link_names),
             "static_restrainer_force": [self.body.mass * tie.force for tie in tied],
             "static_restrainer_elongation": [tie.elongation for tie in tied],
         }
-
-    @cached_property
-    def _link_states_at_rest(self) -> list[LinkForce]:
-        """Elongations and forces of the links at rest."""
-        if not self.groups:
-            return links_at_rest(self.chain_links)
-        return self.standing.chain.link_forces(self.standing.rest or [])
 
     def contact_model(self) -> ContactModel:
         """Return the equations of stacked bodies."""

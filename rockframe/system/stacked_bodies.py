@@ -8,6 +8,7 @@ from functools import cached_property
 from rockframe.dynamics.base_numbers import BaseNumbers
 from rockframe.dynamics.body_statics import StandingBody, standing_body
 from rockframe.dynamics.chain.link_rows import ChainLink
+from rockframe.dynamics.link_statics import LinkForce, links_at_rest
 from rockframe.dynamics.on_base import BodyOnBase
 from rockframe.dynamics.statics import StandingChain
 from rockframe.dynamics.vibrations import ChainBody
@@ -90,6 +91,13 @@ class StackedBodies(Setting):
     def chain_links(self) -> tuple[ChainLink, ...]:
         """The links as the equations take them."""
         return tuple(link.chain_link(self.body.mass) for link in self.links)
+
+    @cached_property
+    def links_at_rest(self) -> list[LinkForce]:
+        """Elongations and forces of the links at rest."""
+        if not self.groups:
+            return links_at_rest(self.chain_links)
+        return self.standing.chain.link_forces(self.standing.rest or [])
 
     @cached_property
     def standing(self) -> StandingBodies:

@@ -28,19 +28,20 @@ from rockframe.dynamics.protocol import CORNER_REACTIONS
 from rockframe.dynamics.single_body import eccentricity_of
 from rockframe.dynamics.statics import StandingChain
 from rockframe.system.bodies import BaseLoad, Restitutions, base_restitution, restitution_cautions
-from rockframe.system.statics import (
-    StandingBodies,
-    Statics,
-    required_states,
-    static_values,
-)
+from rockframe.system.statics import StandingBodies, Statics, required_states, static_values
 from rockframe.units import angle_words
 
 NO_VERTICAL_START: Final = (
     "InitialState: vertical_displacement and vertical_velocity need a base that gives way; on "
     "rigid ground they follow from the rotation"
 )
-REACTIONS: Final = tuple(one.name for one in CORNER_REACTIONS)
+
+
+def corner_reactions(left: float, right: float) -> dict[str, float]:
+    """Return the reactions of both corners by their names in the schema."""
+    return {
+        column.name: force for column, force in zip(CORNER_REACTIONS, (left, right), strict=True)
+    }
 
 
 def uplift_words(radians: float) -> str:

@@ -40,12 +40,7 @@ from rockframe.units.reading import (
     to_si_values,
     unit_registry,
 )
-from rockframe.units.spelling import (
-    angle_words,
-    degrees_text,
-    foreign_quantity_hint,
-    quantity_text,
-)
+from rockframe.units.spelling import angle_words, degrees_text, foreign_quantity_hint, quantity_text
 
 __all__ = [
     "ACCELERATION",

@@ -5,14 +5,7 @@ import re
 from typing import Any, Final
 
 from rockframe.errors import short_repr
-from rockframe.units.kinds import (
-    BED_STIFFNESS,
-    FREQUENCY,
-    SUBGRADE_MODULUS,
-    TIME,
-    Measure,
-    Unit,
-)
+from rockframe.units.kinds import BED_STIFFNESS, FREQUENCY, SUBGRADE_MODULUS, TIME, Measure, Unit
 
 _DIGITS: Final = r"\d+(?:_\d+)*"
 _NUMBER: Final = (

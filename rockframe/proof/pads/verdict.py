@@ -16,7 +16,7 @@ from rockframe.proof.pads.law import Contacts, PadBalls
 from rockframe.proof.pads.prover import Callback, PadProver
 from rockframe.proof.problem import Deviations, PiecewiseGround
 from rockframe.proof.sets import prove_for_set, prove_verdict
-from rockframe.proof.verdict import EXACT, Proof, Tolerances
+from rockframe.proof.verdict import Proof, Tolerances
 from rockframe.signals import Motion
 from rockframe.signals.motion import Incline
 from rockframe.system.bodies import OverturningAngles
@@ -81,8 +81,8 @@ def prove_pads(
     slope: Incline,
     limits: OverturningAngles,
     *,
-    scale: float = 1.0,
-    within: Tolerances = EXACT,
+    scale: float,
+    within: Tolerances,
 ) -> Proof:
     """Prove the verdict of a block on pads, from its mode and its state at the start.
 

@@ -85,6 +85,14 @@ DIRECTIONS: Final = (
 )
 """Of two horizontal components."""
 
+_OF_MATCHING: Final = {
+    "peak_ground_acceleration": ("greatest absolute ground acceleration", " [m s^-2]"),
+    "peak_ground_velocity": ("greatest absolute ground velocity", " [m s^-1]"),
+    "peak_ground_displacement": ("greatest absolute ground displacement", " [m]"),
+    "pulse_indicator": ("pulse indicator of Baker", ""),
+}
+"""What is compared before and after a spectrum is matched."""
+
 RECORDS: Final = rows_over(
     (),
     record=("name of the record, common to components recorded together", str),
@@ -111,20 +119,11 @@ RECORDS: Final = rows_over(
     largest_spectral_misfit="greatest distance of the matched spectrum from the target, over the "
     "target",
     mean_spectral_misfit="mean distance of the matched spectrum from the target, over the target",
-    peak_ground_acceleration_before_matching="greatest absolute ground acceleration before the "
-    "spectrum was matched [m s^-2]",
-    peak_ground_acceleration_after_matching="greatest absolute ground acceleration after the "
-    "spectrum was matched [m s^-2]",
-    peak_ground_velocity_before_matching="greatest absolute ground velocity before the spectrum "
-    "was matched [m s^-1]",
-    peak_ground_velocity_after_matching="greatest absolute ground velocity after the spectrum was "
-    "matched [m s^-1]",
-    peak_ground_displacement_before_matching="greatest absolute ground displacement before the "
-    "spectrum was matched [m]",
-    peak_ground_displacement_after_matching="greatest absolute ground displacement after the "
-    "spectrum was matched [m]",
-    pulse_indicator_before_matching="pulse indicator of Baker before the spectrum was matched",
-    pulse_indicator_after_matching="pulse indicator of Baker after the spectrum was matched",
+    **{
+        f"{name}_{when}_matching": f"{meaning} {when} the spectrum was matched{unit}"
+        for name, (meaning, unit) in _OF_MATCHING.items()
+        for when in ("before", "after")
+    },
     spectral_growth_beyond_range="greatest ratio of matched to scaled spectrum beyond the range of "
     "periods",
     period_of_spectral_growth="period of the greatest ratio of matched to scaled spectrum [s]",

@@ -110,23 +110,13 @@ def integrate_lanes(
 
     Case i is run `run_of[i]`, counted over all rows of `runs`, under motion `motion_of[i]`.
     """
-    made = _Rows(runs)
-    clock = np.empty((len(run_of), at.CLOCK))
-    counters = np.empty((len(run_of), at.COUNTERS), dtype=np.int64)
-    status = np.empty(len(run_of), dtype=np.int64)
-    modes = np.empty(len(run_of), dtype=np.int64)
-    states, memories = (np.empty((len(run_of), size)) for size in made.ending_sizes)
+    made, outcomes = _Rows(runs), list[Outcomes]()
     for some in _batches(motions, motion_of):
         used, place = np.unique(motion_of[some], return_inverse=True)
         batch = made.batch([motions[k] for k in used.tolist()], run_of[some], place)
         advance_batch(batch, made.steps)
-        rows = batch.rows.reshape(len(place), -1)
-        integers = rows.view(np.int64)
-        clock[some] = rows[:, fields.CLOCK : fields.CLOCK + at.CLOCK]
-        counters[some] = integers[:, fields.COUNTERS : fields.COUNTERS + at.COUNTERS]
-        status[some] = integers[:, fields.OWN_INTEGERS + fields.STATUS]
-        modes[some], states[some], memories[some] = made.endings(rows)
-    return Outcomes(clock, counters, status, modes, states, memories)
+        outcomes.append(made.outcomes(batch.rows.reshape(len(place), -1)))
+    return join_outcomes(outcomes)
 
 
 def _batches(motions: Sequence[Motion | None], motion_of: IntegerArray) -> list[slice]:
@@ -185,17 +175,19 @@ class _Rows:
             initial_rows(run.model, run.start) if run.rows is None else run.rows for run in runs
         ])  # fmt: skip
 
-    @property
-    def ending_sizes(self) -> tuple[int, int]:
-        """The lengths of a state and of a memory."""
-        return self._indices.slope - self._indices.state, self._memory
-
-    def endings(self, rows: Matrix) -> tuple[IntegerArray, Matrix, Matrix]:
-        """Return modes, states and memories at the end of runs, from their rows."""
+    def outcomes(self, rows: Matrix) -> Outcomes:
+        """Return how runs ended, from their rows, whose memory can be freed then."""
         indices, behind = self._indices, self._indices.numbers + self._count
-        modes = rows.view(np.int64)[:, fields.COUNTERS + at.MODE]
-        memories = rows[:, behind : behind + self._memory]
-        return modes, rows[:, indices.state : indices.slope], memories
+        integers = rows.view(np.int64)
+        counters = integers[:, fields.COUNTERS : fields.COUNTERS + at.COUNTERS]
+        return Outcomes(
+            clock=rows[:, fields.CLOCK : fields.CLOCK + at.CLOCK].copy(),
+            counters=counters.copy(),
+            status=integers[:, fields.OWN_INTEGERS + fields.STATUS].copy(),
+            modes=counters[:, at.MODE].copy(),
+            states=rows[:, indices.state : indices.slope].copy(),
+            memories=rows[:, behind : behind + self._memory].copy(),
+        )
 
     def batch(
         self, motions: Sequence[Motion | None], run_of: IntegerArray, motion_of: IntegerArray
