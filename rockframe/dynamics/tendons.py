@@ -23,7 +23,7 @@ from rockframe.dynamics.chain.link_rows import (
     link_row,
     padded_state_count,
 )
-from rockframe.dynamics.chain.linked import with_workspace
+from rockframe.dynamics.chain.returned import with_workspace
 from rockframe.dynamics.links import GUARDS, LinkNumbers, Stretch
 from rockframe.dynamics.pads import ROUNDING
 from rockframe.dynamics.protocol import (
@@ -269,10 +269,9 @@ def frame_with_tendons(
         rows.append(link_row(along, tendon.law, value))
         value *= padded_state_count(tendon.law.states())
     rocking: Any = model.system
-    filled, count = np.concatenate(rows), len(links)
+    array, count = np.concatenate(rows), len(links)
     system: FrameWithTendons = with_workspace(
-        FrameWithTendons(rocking, half_width, float(columns), 0, links[0].law, count, filled),
-        filled,
+        FrameWithTendons(rocking, half_width, float(columns), 0, links[0].law, count, array)
     )
     stiffness = columns * sum(tendon.stiffness for tendon in links) * (2.0 * half_width) ** 2
     fastest = math.sqrt(model.fastest_frequency**2 + stiffness / rocking.right.inertia)

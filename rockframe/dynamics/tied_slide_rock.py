@@ -22,7 +22,7 @@ from rockframe.dynamics.chain.link_rows import (
     DISPLACEMENT_Y,
     ChainLink,
 )
-from rockframe.dynamics.chain.linked import LinkMechanics, link_law_and_rows, with_workspace
+from rockframe.dynamics.chain.linked import LinkMechanics, link_law_and_rows
 from rockframe.dynamics.chain.model import (
     link_columns,
     link_force_rounding,
@@ -30,6 +30,7 @@ from rockframe.dynamics.chain.model import (
     link_scales,
     visible_links,
 )
+from rockframe.dynamics.chain.returned import with_workspace
 from rockframe.dynamics.chain.rows import BODY_STRIDE
 from rockframe.dynamics.protocol import ContactModel, Ground, Guards, Slope, Start
 from rockframe.dynamics.slide_motion import (
@@ -41,7 +42,6 @@ from rockframe.dynamics.slide_motion import (
     NORMAL_FORCE,
     RISE,
     ROTATION,
-    SLIDE_MEMORY,
     SLIP,
     Loads,
 )
@@ -51,8 +51,6 @@ from rockframe.dynamics.vibrations import greatest_eigenvalue
 
 BLOCK_COLUMNS: Final = len(COLUMNS)
 SLIP_COLUMNS: Final = ("slip", "slip_velocity")
-LINK_PLACE: Final = len(SLIDE_MEMORY)
-"""Index into the memory: the link of the last event, counted from 1; 0 for none."""
 
 
 class TiedNumbers(NamedTuple):
@@ -99,11 +97,6 @@ class TiedSlideRock(TiedNumbers, LinkMechanics, SlideRock):  # pyright: ignore[r
     def body_column_count(self) -> int:
         """Return the number of columns of the block."""
         return BLOCK_COLUMNS
-
-    @inlined
-    def link_event_index(self) -> int:
-        """Return the index in the memory of the last event's link."""
-        return LINK_PLACE
 
     @inlined
     def reset_event(self, memory: Vector) -> None:
@@ -205,10 +198,8 @@ def tied_slide_rock(block: SlideRock, ties: Sequence[ChainLink], *, mass: float)
     """Assemble the model of a block that slides and rocks with links, from its mass [kg]."""
     untied = slide_rock(block, mass=mass)
     law, rows = link_law_and_rows(ties, MODES, 1)
-    filled = np.concatenate([np.zeros(BODY_STRIDE), *rows])
-    system: TiedSlideRock = with_workspace(
-        TiedSlideRock(*block, 1, len(ties), 0.0, law, filled), filled
-    )
+    array = np.concatenate([np.zeros(BODY_STRIDE), *rows])
+    system: TiedSlideRock = with_workspace(TiedSlideRock(*block, 1, len(ties), 0.0, law, array))
     laws = [system.law_of(system.row_of_link(i)) for i in range(len(ties))]
     system = system._replace(begins_idle=float(all(one.idles(0) for one in laws)))
     upright, at_rest, _ = untied.initial(Start())

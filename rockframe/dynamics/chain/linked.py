@@ -6,8 +6,6 @@ Links load the bodies, :eq:`eq-link-loads`; the equations of the bodies are othe
 from collections.abc import Sequence
 from typing import Any
 
-import numpy as np
-
 from rockframe.compiled import Vector, inlined, kernel, numbers_in, view_of
 from rockframe.dynamics.chain import rows as at
 from rockframe.dynamics.chain.link_points import DisplacedPoint, LinkPoints
@@ -137,9 +135,9 @@ class LinkMechanics(LinkPoints):
         self, mode: int, guard: int, state: Vector, ground: Ground, memory: Vector
     ) -> int:
         """Carry out the switch of a body or of a link; return the new mode."""
-        place, body_guards = self.link_event_index(), self.body_guard_count()
+        link_of_event, body_guards = len(memory) - 1, self.body_guard_count()
         if guard < body_guards:
-            memory[place] = 0.0
+            memory[link_of_event] = 0.0
             return self.switch_body(mode, guard, state, ground, memory)
         self.reset_event(memory)
         i = (guard - body_guards) // GUARDS
@@ -155,7 +153,7 @@ class LinkMechanics(LinkPoints):
         )
         memory[LAST_EVENT] = event.event
         memory[LINK_LOSS] += event.lost
-        memory[place] = i + 1.0
+        memory[link_of_event] = i + 1.0
         return mode + value * (event.state - link_state)
 
     @kernel
@@ -244,10 +242,3 @@ def link_law_and_rows(
         msg = f"{len(links)} links are more than {bodies} bodies can have"
         raise AssemblyError([msg])
     return own[0].with_numbers(numbers_in(own[0]).tolist()), rows
-
-
-def with_workspace(system: Any, filled: Vector) -> Any:
-    """Return a system with its workspace, added as zeros behind the filled part of its array."""
-    return system._replace(
-        rows=np.concatenate([filled, np.zeros(system.array_length() - len(filled))])
-    )

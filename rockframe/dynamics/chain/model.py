@@ -15,11 +15,12 @@ from rockframe.dynamics.chain import rows as at
 from rockframe.dynamics.chain.friction import SlippingChain
 from rockframe.dynamics.chain.link_rows import LINK_MOMENT, ChainLink
 from rockframe.dynamics.chain.linked import LinkMechanics
-from rockframe.dynamics.chain.linked_chain import LinkedBodies, LinkedBodiesOnGround, with_links
+from rockframe.dynamics.chain.linked_chain import LinkedBodies, LinkedRigidChain, with_links
+from rockframe.dynamics.chain.returned import with_workspace
 from rockframe.dynamics.chain.rigid import SET_MEMORY, RigidChain
 from rockframe.dynamics.chain.rigid_friction import SlippingRigidChain
 from rockframe.dynamics.chain.rows import BASE_COLUMNS, GUARDS, body_row, chain_numbers
-from rockframe.dynamics.chain.slips import SlippingBodies, friction_numbers
+from rockframe.dynamics.chain.slips import SlippingBodies
 from rockframe.dynamics.chain.system import Chain
 from rockframe.dynamics.links import GUARDS as GUARDS_OF_LINK
 from rockframe.dynamics.links import SteadyForce
@@ -61,7 +62,7 @@ def bare_chain(bodies: Sequence[ChainBody], ties: Sequence[ChainLink] = ()) -> C
         row[at.FORCE_SCALE] = max(
             row[at.FORCE_SCALE], link_force_rounding(ties) / ROUNDING_OF_FORCES
         )
-    return kind(*chain_numbers(rows))
+    return with_workspace(kind(*chain_numbers(rows)))
 
 
 def with_friction(bare: Chain, frictions: Sequence[tuple[float, float, float]]) -> Chain:
@@ -70,7 +71,8 @@ def with_friction(bare: Chain, frictions: Sequence[tuple[float, float, float]]) 
         math.isfinite(friction[0]) for friction in frictions
     )
     kind = SlippingChain if deformable else SlippingRigidChain
-    return kind(bare.body_count, np.concatenate([bare.rows, friction_numbers(frictions)]))
+    array = np.concatenate([bare.rows[: bare.workspace_end()], np.ravel(frictions)])
+    return with_workspace(kind(bare.body_count, array))
 
 
 def chain_model(
@@ -342,7 +344,7 @@ def _initial(system: Chain, starts: StartConditions, start: Start) -> tuple[int,
     if isinstance(system, RigidChain):
         memory = np.concatenate([memory, [1.0, 0.0, 0.0]])
         system.project_onto_contacts(mode, state, memory)
-    if isinstance(system, LinkedBodiesOnGround):
+    if isinstance(system, LinkedRigidChain):
         system.store_held_place(mode, state, memory)
     if isinstance(system, SlippingBodies):
         places = [system.contact_point(k, mode, state, memory) for k in range(count)]

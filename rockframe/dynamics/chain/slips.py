@@ -5,12 +5,9 @@ The mode says which, and the sense of the slip.
 """
 
 import math
-from collections.abc import Sequence
 from typing import Final
 
-import numpy as np
-
-from rockframe.compiled import Vector, inlined, kernel, view_of
+from rockframe.compiled import Vector, inlined, kernel
 from rockframe.dynamics import events
 from rockframe.dynamics.bodies import BEFORE_HORIZONTAL, ROTATION
 from rockframe.dynamics.chain import rows as at
@@ -26,7 +23,7 @@ STATIC: Final = 0
 KINETIC: Final = 1
 IMPULSIVE: Final = 2  # in impacts
 FRICTION_STRIDE: Final = 3
-"""Coefficients of each body, behind the array of the chain; the workspace for columns follows."""
+"""Coefficients of each body, behind the array of the chain."""
 SLIP_COLUMNS: Final = 2  # slip and its rate
 
 OFFSET: Final = 0  # slip less the place of the held point [m]
@@ -49,19 +46,17 @@ class SlippingBodies(Chain):
     @inlined
     def friction_coefficient(self, k: int, which: int) -> float:
         """Return a coefficient of friction under a body."""
-        return float(self.rows[self.chain_end() + FRICTION_STRIDE * k + which])
+        return float(self.rows[self.workspace_end() + FRICTION_STRIDE * k + which])
 
     @inlined
-    def column_workspace(self) -> Vector:
-        """Return the workspace for columns."""
-        first = self.chain_end() + FRICTION_STRIDE * self.body_count
-        return view_of(self.rows, first, (COLUMNS + SLIP_COLUMNS) * self.body_count)
+    def bodies_end(self) -> int:
+        """Return the index behind all that belongs to the bodies."""
+        return self.workspace_end() + FRICTION_STRIDE * self.body_count
 
     @inlined
-    def friction_end(self) -> int:
-        """Return the index behind the coefficients of friction and the columns."""
-        count = self.body_count
-        return self.chain_end() + (FRICTION_STRIDE + COLUMNS + SLIP_COLUMNS) * count
+    def body_column_count(self) -> int:
+        """Return the number of columns of all bodies, their bases and slips."""
+        return (COLUMNS + SLIP_COLUMNS) * self.body_count
 
     @kernel
     def modes(self) -> int:
@@ -110,11 +105,6 @@ class SlippingBodies(Chain):
     def slip_memory(self, k: int) -> int:
         """Return the index in the memory of the first number of a body's slip."""
         return self.event_memory_end() + SLIP_MEMORY * k
-
-    @inlined
-    def link_event_index(self) -> int:
-        """Return the index in the memory of the last event's link, in a chain with links."""
-        return self.slip_memory(self.body_count)
 
     @inlined
     def update_peak_slips(self, mode: int, state: Vector, memory: Vector) -> None:
@@ -277,9 +267,3 @@ class SlippingBodies(Chain):
         slips = memory[self.slip_memory(k) :]
         residual = self.slip_of(k, mode, state, memory)
         return residual, float(slips[PEAK_LEFT]), float(slips[PEAK_RIGHT])
-
-
-def friction_numbers(frictions: Sequence[tuple[float, float, float]]) -> Vector:
-    """Return the coefficients of friction of all bases, then a workspace for columns."""
-    work = (COLUMNS + SLIP_COLUMNS) * len(frictions)
-    return np.concatenate([np.ravel(frictions), np.zeros(work)])

@@ -24,10 +24,15 @@ class Chain(MovingBodies):
 
     __slots__ = ()
 
+    @inlined
+    def body_guard_count(self) -> int:
+        """Return the number of guards of all bodies."""
+        return GUARDS * self.body_count
+
     @kernel
     def guards(self) -> int:
         """Return the number of guards, of each body in turn."""
-        return GUARDS * self.body_count
+        return self.body_guard_count()
 
     @kernel
     def modes(self) -> int:
@@ -110,11 +115,6 @@ class Chain(MovingBodies):
     def event_memory_end(self) -> int:
         """Return the index in the memory behind the numbers of the last event."""
         return HELD_PLACE + self.body_count + 1
-
-    @inlined
-    def link_event_index(self) -> int:
-        """Return the index in the memory of the last event's link, in a chain with links."""
-        return self.event_memory_end()
 
     @inlined
     def switch_on_base(
