@@ -20,11 +20,12 @@ from rockframe.dynamics.chain.link_rows import (
     BODY_VERSINE,
     DISPLACEMENT_X,
     DISPLACEMENT_Y,
+    MOMENT_OF_LINKS,
     ChainLink,
+    link_columns,
 )
 from rockframe.dynamics.chain.linked import LinkMechanics, link_law_and_rows
 from rockframe.dynamics.chain.model import (
-    link_columns,
     link_force_rounding,
     link_guard_tolerance,
     link_scales,
@@ -201,7 +202,7 @@ def tied_slide_rock(block: SlideRock, ties: Sequence[ChainLink], *, mass: float)
     array = np.concatenate([np.zeros(BODY_STRIDE), *rows])
     system: TiedSlideRock = with_workspace(TiedSlideRock(*block, 1, len(ties), 0.0, law, array))
     laws = [system.law_of(system.row_of_link(i)) for i in range(len(ties))]
-    system = system._replace(begins_idle=float(all(one.idles(0) for one in laws)))
+    system = system._replace(begins_idle=float(all(law.idles(0) for law in laws)))
     upright, at_rest, _ = untied.initial(Start())
     link_variables = np.zeros(system.variables())
     state_at_rest = np.append(at_rest, link_variables)
@@ -219,15 +220,15 @@ def tied_slide_rock(block: SlideRock, ties: Sequence[ChainLink], *, mass: float)
     visible, own = visible_links(ties), untied.columns
     if block.static == math.inf:  # no columns of slip where there cannot be any
         own = tuple(
-            replace(one, name=f"unused_{one.name}") if one.name in SLIP_COLUMNS else one
-            for one in own
+            replace(column, name=f"unused_{column.name}") if column.name in SLIP_COLUMNS else column
+            for column in own
         )
     return replace(
         untied,
         system=system,
         scales=np.append(untied.scales, link_scales(system, ties)),
         guard_tolerance=np.concatenate([block_tolerance, *map(link_guard_tolerance, ties)]),
-        columns=(*own, *link_columns(len(ties), visible)),
+        columns=(*own, *link_columns(len(ties), visible), MOMENT_OF_LINKS),
         memory=(*untied.memory, "link_of_event"),
         links=visible,
         selects=True,

@@ -2,7 +2,7 @@
 
 from typing import Final, NamedTuple
 
-from rockframe.compiled import inlined, kernel
+from rockframe.compiled import Vector, inlined, kernel
 from rockframe.dynamics.base import Base, BaseForce, EndEvent, Guards, Variables
 from rockframe.dynamics.bed import Bed
 from rockframe.dynamics.body import BaseLine
@@ -20,16 +20,7 @@ class LawNumbers(NamedTuple):
     """Which law a base has, and its numbers."""
 
     which: int
-    n0: float
-    n1: float
-    n2: float
-    n3: float
-    n4: float
-    n5: float
-    n6: float
-    n7: float
-    n8: float
-    n9: float
+    numbers: Vector
 
 
 class AnyBase(Base, LawNumbers):
@@ -40,15 +31,15 @@ class AnyBase(Base, LawNumbers):
     @inlined
     def pads(self) -> ElasticPads:
         """Return the pads."""
-        return ElasticPads(
-            Viscoelastic(self.n0, self.n1), self.n2, self.n3, self.n4, self.n5, self.n6, self.n7,
-            self.n8, self.n9,
-        )  # fmt: skip
+        n = self.numbers
+        law = Viscoelastic(n[0], n[1])
+        return ElasticPads(law, n[2], n[3], n[4], n[5], n[6], n[7], n[8], n[9])
 
     @inlined
     def bed(self) -> Bed:
         """Return the bed."""
-        return Bed(self.n0, self.n1, self.n2, self.n3, self.n4 != 0.0)
+        n = self.numbers
+        return Bed(n[0], n[1], n[2], n[3], n[4] != 0.0)
 
     @kernel
     def end_guards(self) -> int:

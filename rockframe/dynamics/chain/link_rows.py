@@ -4,6 +4,7 @@ One machine code serves all links of a law, whatever their number.
 """
 
 import math
+from collections.abc import Iterator
 from typing import TYPE_CHECKING, Any, Final, NamedTuple
 
 import numpy as np
@@ -12,7 +13,7 @@ from rockframe.compiled import Vector, inlined, kernel, numbers_in, view_from, v
 from rockframe.dynamics.chain.returned import ReturnedArrays
 from rockframe.dynamics.links import GUARDS, LinkNumbers
 from rockframe.dynamics.pads import ROUNDING
-from rockframe.dynamics.protocol import Energies, Ground, Guards, Slope
+from rockframe.dynamics.protocol import Column, Energies, Ground, Guards, Slope, column_of
 
 GROUND: Final = -1
 """In place of the number of a body."""
@@ -69,6 +70,15 @@ class ChainLink(NamedTuple):
         """Length that the rounding noise of the elongation is proportional to [m]."""
         length = math.hypot(*self.separation)
         return length + math.hypot(*self.on_point) + math.hypot(*self.to_point)
+
+
+class Link(NamedTuple):
+    """A link in a mode and state of the system."""
+
+    row: Vector
+    law: Any
+    state: int  # of its law
+    own: Vector  # its variables
 
 
 class LinkedChainNumbers(NamedTuple):
@@ -188,6 +198,14 @@ class LinkRows(Linkable):
         return view_of(state, 2 * self.coordinates() + i * count, count)
 
     @inlined
+    def link(self, i: int, mode: int, state: Vector) -> Link:
+        """Return a link as it is in a mode and state."""
+        row = self.row_of_link(i)
+        return Link(
+            row, self.law_of(row), self.link_state(mode, row), self.link_variables(i, state)
+        )
+
+    @inlined
     def poses(self) -> Vector:
         """Return displacements and rotations of bodies, and the forces of links on them."""
         return view_of(self.rows, self.links_end(), POSE_STRIDE * self.body_count)
@@ -232,6 +250,19 @@ def link_row(link: ChainLink, law: Any, value: int) -> Vector:
         *link.along,
     )  # fmt: skip
     return np.array([*geometry, *numbers_in(law)], dtype=np.float64)
+
+
+def link_columns(links: int, shown: int) -> Iterator[Column]:
+    """Return the columns of links; users do not see those of loads, which come last."""
+    for i in range(links):
+        kind = "restrainer" if i < shown else "unused_load"
+        yield Column(column_of(f"{kind}_force", i), per_mass=True)
+        yield Column(column_of(f"{kind}_elongation", i))
+        yield Column(column_of(f"{kind}_state", i))
+
+
+MOMENT_OF_LINKS: Final = Column(LINK_MOMENT, per_mass=True)
+"""The column behind those of the links of bodies."""
 
 
 def padded_state_count(states: int) -> int:

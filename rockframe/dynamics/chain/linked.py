@@ -54,8 +54,7 @@ class LinkMechanics(LinkPoints):
         for k in range(self.body_count):
             poses[k * POSE_STRIDE + LINK_FORCE_X] = poses[k * POSE_STRIDE + LINK_FORCE_Y] = 0.0
         for i in range(self.link_count):
-            row, own = self.row_of_link(i), self.link_variables(i, state)
-            law, link_state = self.law_of(row), self.link_state(mode, row)
+            row, law, link_state, own = self.link(i, mode, state)
             count = law.variables()
             rates = view_of(out, self.coordinates() + i * count, count)
             if law.idles(link_state):
@@ -112,8 +111,7 @@ class LinkMechanics(LinkPoints):
         else:
             self.forces_from_slope(mode, state, slope, ground)
         for i in range(self.link_count):
-            row, own = self.row_of_link(i), self.link_variables(i, state)
-            law, link_state = self.law_of(row), self.link_state(mode, row)
+            row, law, link_state, own = self.link(i, mode, state)
             link, first = self.link_stretch(row, work, idle), self.body_guard_count() + GUARDS * i
             for which in range(GUARDS):
                 value, change = law.guard(which, link_state, link, own)
@@ -141,20 +139,14 @@ class LinkMechanics(LinkPoints):
             return self.switch_body(mode, guard, state, ground, memory)
         self.reset_event(memory)
         i = (guard - body_guards) // GUARDS
-        row, own, work = self.row_of_link(i), self.link_variables(i, state), self.workspace()
+        (row, law, link_state, own), work = self.link(i, mode, state), self.workspace()
         self.write_kinematics_and_poses(mode, state, work)
-        first, second = self.end_points(row, work)
-        link_state, value = self.link_state(mode, row), int(row[PLACE_VALUE])
-        event = self.law_of(row).switch(
-            guard - body_guards - GUARDS * i,
-            link_state,
-            self.link_kinematics(row, first, second).stretch,
-            own,
-        )
+        which = guard - body_guards - GUARDS * i
+        event = law.switch(which, link_state, self.stretch_now(row, work), own)
         memory[LAST_EVENT] = event.event
         memory[LINK_LOSS] += event.lost
         memory[link_of_event] = i + 1.0
-        return mode + value * (event.state - link_state)
+        return mode + int(row[PLACE_VALUE]) * (event.state - link_state)
 
     @kernel
     def energies(self, mode: int, state: Vector) -> Energies:
@@ -163,11 +155,8 @@ class LinkMechanics(LinkPoints):
         self.write_poses(mode, state, work)
         gravity, elastic, change = energies.gravity, energies.elastic, energies.from_rest
         for i in range(self.link_count):
-            row, own = self.row_of_link(i), self.link_variables(i, state)
-            first, second = self.end_points(row, work)
-            stored = self.law_of(row).energy(
-                self.link_state(mode, row), self.link_kinematics(row, first, second).stretch, own
-            )
+            row, law, link_state, own = self.link(i, mode, state)
+            stored = law.energy(link_state, self.stretch_now(row, work), own)
             # loads and walls have a fixed direction; a load has one state, a wall two
             if (row[DIRECTION_X] != 0.0 or row[DIRECTION_Y] != 0.0) and row[STATE_COUNT] <= 1.0:
                 gravity += stored
@@ -184,8 +173,7 @@ class LinkMechanics(LinkPoints):
         out, work = self.observe_bodies(mode, state, slope, ground, memory), self.workspace()
         moment = 0.0
         for i in range(self.link_count):
-            row, own = self.row_of_link(i), self.link_variables(i, state)
-            law, link_state = self.law_of(row), self.link_state(mode, row)
+            row, law, link_state, own = self.link(i, mode, state)
             first, second = self.end_points(row, work)
             link = self.link_kinematics(row, first, second)
             j = self.body_column_count() + LINK_COLUMNS * i
@@ -204,10 +192,8 @@ class LinkMechanics(LinkPoints):
         work = self.workspace()
         self.write_kinematics_and_poses(mode, state, work)
         for i in range(self.link_count):
-            row, own = self.row_of_link(i), self.link_variables(i, state)
-            stretched = self.link_kinematics(row, *self.end_points(row, work)).stretch
-            law = self.law_of(row)
-            row[REST_ENERGY] = law.energy(self.link_state(mode, row), stretched, own)
+            row, law, link_state, own = self.link(i, mode, state)
+            row[REST_ENERGY] = law.energy(link_state, self.stretch_now(row, work), own)
 
     @kernel
     def start_links(self, mode: int, state: Vector) -> int:
@@ -215,12 +201,9 @@ class LinkMechanics(LinkPoints):
         work = self.workspace()
         self.write_kinematics_and_poses(mode, state, work)
         for i in range(self.link_count):
-            row, own = self.row_of_link(i), self.link_variables(i, state)
-            first, second = self.end_points(row, work)
-            link_state = self.law_of(row).starting(
-                self.link_kinematics(row, first, second).stretch, own
-            )
-            mode += int(row[PLACE_VALUE]) * (link_state - self.link_state(mode, row))
+            row, law, was, own = self.link(i, mode, state)
+            starts = law.starting(self.stretch_now(row, work), own)
+            mode += int(row[PLACE_VALUE]) * (starts - was)
         return mode
 
 

@@ -1,7 +1,7 @@
 """Assembly of the model of a chain of bodies: sizes, bounds of its frequencies, initial state."""
 
 import math
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Sequence
 from typing import Final, NamedTuple
 
 import numpy as np
@@ -13,7 +13,7 @@ from rockframe.dynamics.bodies import BEFORE_HORIZONTAL, BODY_DOF, ROTATION, VER
 from rockframe.dynamics.body import BodyState
 from rockframe.dynamics.chain import rows as at
 from rockframe.dynamics.chain.friction import SlippingChain
-from rockframe.dynamics.chain.link_rows import LINK_MOMENT, ChainLink
+from rockframe.dynamics.chain.link_rows import MOMENT_OF_LINKS, ChainLink, link_columns
 from rockframe.dynamics.chain.linked import LinkMechanics
 from rockframe.dynamics.chain.linked_chain import LinkedBodies, LinkedRigidChain, with_links
 from rockframe.dynamics.chain.returned import with_workspace
@@ -138,7 +138,7 @@ def chain_model(
                 for k in range(count if frictions else 0)
                 for name in ("slip", "slip_velocity")
             ),
-            *link_columns(len(ties), tied),
+            *link_columns(len(ties), tied), *((MOMENT_OF_LINKS,) if ties else ()),
         ),
         memory=(
             *MEMORY, *(f"held_place_of_{k}" for k in range(1, count)), "body_of_event",
@@ -225,17 +225,6 @@ def link_scales(system: LinkMechanics, ties: Sequence[ChainLink]) -> list[float]
 def link_guard_tolerance(tie: ChainLink) -> Vector:
     """Return the rounding noise of a link's guards."""
     return np.full(GUARDS_OF_LINK, ROUNDING * tie.length_scale)
-
-
-def link_columns(ties: int, shown: int) -> Iterator[Column]:
-    """Return the columns of links; users do not see those of loads, which come last."""
-    for i in range(ties):
-        kind = "restrainer" if i < shown else "unused_load"
-        yield Column(column_of(f"{kind}_force", i), per_mass=True)
-        yield Column(column_of(f"{kind}_elongation", i))
-        yield Column(column_of(f"{kind}_state", i))
-    if ties:
-        yield Column(LINK_MOMENT, per_mass=True)
 
 
 def _scales(bodies: Sequence[ChainBody]) -> Vector:

@@ -229,11 +229,7 @@ class ChainArray(ReturnedArrays, StateAccess, CalledBySteps, ChainNumbers):  # p
         """Return a body on its base."""
         r = view_from(self.rows, k * ROW_STRIDE)
         body = Body(r[0], r[1], r[2], r[3], r[4], r[5], int(r[6]), r[7] != 0.0)
-        n = view_from(r, LAW_NUMBERS)
-        base = AnyBase(
-            int(r[LAW]), n[0], n[1], n[2], n[3], n[4], n[5], n[6], n[7], n[8], n[9],
-        )  # fmt: skip
-        return BodyOnBase(body, base)
+        return BodyOnBase(body, AnyBase(int(r[LAW]), view_from(r, LAW_NUMBERS)))
 
     @inlined
     def constrained_state(self, k: int, body_mode: Mode, state: Vector) -> BodyState:
