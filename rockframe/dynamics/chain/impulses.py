@@ -246,9 +246,8 @@ class RigidImpulses(CornerGuards):
     @kernel
     def slip_along_friction(self, k: int, mode: int, state: Vector) -> float:
         """Return the velocity of slip, positive in the sense of the friction of the landing."""
-        part, body = self.on_base(k), self.state_of(k, state)
-        pin = part.body.pin(self.body_mode(mode, k).pivot)
-        reach = part.body.reach(pin, part.body.attitude(body.rotation))
+        body = self.state_of(k, state)
+        reach = self.on_base(k).body.reach_about(self.body_mode(mode, k).pivot, body.rotation)
         about, sway = reach.derivative * body.angular_velocity, body.horizontal_velocity
         slip, along = sway - about, self.workspace()[k * BODY_STRIDE + at.LANDING_TANGENTIAL]
         if along == 0.0 or abs(slip) <= SLIP_TOLERANCE * (abs(sway) + abs(about)):

@@ -139,7 +139,8 @@ class LinkMechanics(LinkPoints):
             return self.switch_body(mode, guard, state, ground, memory)
         self.reset_event(memory)
         i = (guard - body_guards) // GUARDS
-        (row, law, link_state, own), work = self.link(i, mode, state), self.workspace()
+        row, law, link_state, own = self.link(i, mode, state)
+        work = self.workspace()
         self.write_kinematics_and_poses(mode, state, work)
         which = guard - body_guards - GUARDS * i
         event = law.switch(which, link_state, self.stretch_now(row, work), own)

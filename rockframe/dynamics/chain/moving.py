@@ -329,11 +329,8 @@ class MovingBodies(ChainArray):
         """Return the place of a body's centre of mass along the body below, or along the ground."""
         if k + 1 < self.body_count:
             return state[self.horizontal_of(k)]
-        part, body = self.on_base(k), self.state_of(k, state)
-        attitude = part.body.attitude(body.rotation)
-        return part.horizontal_position(
-            self.body_mode(mode, k), body, attitude, memory[HELD_PLACE + k]
-        )
+        body_mode, body = self.body_mode(mode, k), self.state_of(k, state)
+        return self.on_base(k).horizontal_position(body_mode, body, memory[HELD_PLACE + k])
 
     @kernel
     def response(

@@ -95,9 +95,7 @@ class RigidChain(RigidImpulses):
             # the rule of restraint may change a held point without an impact: contacts stay
             if memory[LAST_EVENT] != IMPACT or not self.needs_new_impulses(closed, new):
                 return new
-            ends = self.landed_ends(k, left, mode, new)
-            new = self.find_new_impulses(k, ends, closed, new, state, ground, memory)
-            stop_negligible_rebound(self, self.on_base(k), k, left, new, state, ground, memory)
+            new = self.find_new_impulses(k, left, closed, mode, new, state, ground, memory)
             # the impulse of the hold is a part of the landing impulse, and has been scaled with it
             memory[IMPACT_LOSS] += memory[REPINNING_LOSS] - pinned
             memory[REPINNING_LOSS] = pinned
@@ -187,7 +185,7 @@ class RigidChain(RigidImpulses):
         if corners == self.bearing_corners(mode):
             return mode
         parted = self.with_bearing_corners(mode, corners, self.tension_corners(mode) & corners)
-        reach = part.body.reach(part.body.pin(sliding.pivot), part.body.attitude(body.rotation))
+        reach = part.body.reach_about(sliding.pivot, body.rotation)
         slip = body.horizontal_velocity - reach.derivative * body.angular_velocity
         if (
             slip * lift_per_slip(self, part, k, self.with_body_mode(parted, k, sliding), state)
@@ -276,14 +274,16 @@ class RigidChain(RigidImpulses):
 
     @kernel
     def find_new_impulses(
-        self, k: int, ends: int, closed: int, mode: int, state: Vector, ground: Ground,
-        memory: Vector,
+        self, k: int, left: bool, closed: int, before: int, mode: int, state: Vector,
+        ground: Ground, memory: Vector,
     ) -> int:  # fmt: skip
         """Undo impulses of rigid bases in an event elsewhere; find new ones, in compression only.
 
         They act at the corners `closed`. The impulse at the ends of body `k` that have landed is
-        scaled, so that these do not rebound faster than restitution allows.
+        scaled, so that these do not rebound faster than restitution allows. `before` is the mode
+        before the event.
         """
+        ends = self.landed_ends(k, left, before, mode)
         free = self.release_all(mode, state, memory)
         self.project_onto_contacts(free, state, memory)
         kinetic, flying = self.energies(free, state).kinetic, self.with_bearing_corners(free, 0, 0)
@@ -293,6 +293,7 @@ class RigidChain(RigidImpulses):
         new = self.choose_bearing_corners(free, closed, closed, 0, state, ground, memory)
         new = self.hold_small_rebounds(closed, new, state, ground, memory)
         new = self.rest_repeatedly(new, state, ground, memory)
+        stop_negligible_rebound(self, self.on_base(k), k, left, new, state, ground, memory)
         memory[LAST_EVENT] = event
         return new
 

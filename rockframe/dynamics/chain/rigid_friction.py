@@ -11,17 +11,21 @@ from rockframe.compiled import Vector, inlined, kernel
 from rockframe.dynamics.body import with_accelerations
 from rockframe.dynamics.chain import rows as at
 from rockframe.dynamics.chain.corners import IN_TENSION
-from rockframe.dynamics.chain.impact import JAMMED, BearingCorners, find_bearing_corners
+from rockframe.dynamics.chain.impact import (
+    JAMMED,
+    ROUNDING,
+    BearingCorners,
+    find_bearing_corners,
+)
 from rockframe.dynamics.chain.motion import set_inertia_loads
 from rockframe.dynamics.chain.rigid import ADMISSIBLE_COUNT, CHOSEN_CORNERS, NEXT_BEST_CORNERS
 from rockframe.dynamics.chain.rows import BODY_STRIDE, GUARDS
 from rockframe.dynamics.chain.slip_trials import SlipTrials
-from rockframe.dynamics.chain.slips import OFFSET, ROUNDING, STATIC
+from rockframe.dynamics.chain.slips import OFFSET, STATIC
 from rockframe.dynamics.events import IMPACT, REST, SILENT, STICK
 from rockframe.dynamics.on_base import HOLD, SLIP, Mode
 from rockframe.dynamics.pads import CORNER_GUARDS
 from rockframe.dynamics.protocol import HELD_PLACE, IMPACT_LOSS, LAST_EVENT, Ground
-from rockframe.dynamics.switching import stop_negligible_rebound
 
 FRICTION_CHANGED: Final = -1
 """In place of the leaving corner: only friction has changed."""
@@ -148,10 +152,8 @@ class SlippingRigidChain(SlipTrials):
             return new
         if memory[LAST_EVENT] == IMPACT:
             if self.needs_new_impulses(closed, new):
-                part, left = self.on_base(k), which < CORNER_GUARDS
-                ends = self.landed_ends(k, left, mode, new)
-                new = self.find_new_impulses(k, ends, closed, new, state, ground, memory)
-                stop_negligible_rebound(self, part, k, left, new, state, ground, memory)
+                left = which < CORNER_GUARDS
+                new = self.find_new_impulses(k, left, closed, mode, new, state, ground, memory)
             for other in range(self.body_count):
                 if not self.is_slippery(other):
                     new = self.disturbed_mode(other, new, state)

@@ -11,6 +11,7 @@ from rockframe.compiled import Vector, inlined, kernel
 from rockframe.dynamics import events
 from rockframe.dynamics.bodies import BEFORE_HORIZONTAL, ROTATION
 from rockframe.dynamics.chain import rows as at
+from rockframe.dynamics.chain.impact import ROUNDING
 from rockframe.dynamics.chain.motion import add_tangential_load
 from rockframe.dynamics.chain.rows import BODY_STRIDE, COLUMNS
 from rockframe.dynamics.chain.system import Chain
@@ -32,8 +33,6 @@ PEAK_RIGHT: Final = 2
 SLIP_MEMORY: Final = 3
 """Numbers of the slip of each body in the memory, behind those of the chain."""
 
-ROUNDING: Final = 1e-12
-"""Rounding noise of accelerations over gravity [1]."""
 MAX_SLIP_CHANGES: Final = 6
 """Changes of the slips, for each body, after which a search changes its method or stops."""
 
@@ -84,22 +83,17 @@ class SlippingBodies(Chain):
     @kernel
     def pivot_slip_rate(self, k: int, pivot: int, state: Vector) -> tuple[float, float]:
         """Return the velocity of slip of a point of a base, and its rounding noise."""
-        part, body = self.on_base(k), self.state_of(k, state)
-        pin = part.body.pin(pivot)
-        about = (
-            part.body.reach(pin, part.body.attitude(body.rotation)).derivative
-            * body.angular_velocity
-        )
+        law, body = self.on_base(k).body, self.state_of(k, state)
+        about = law.reach_about(pivot, body.rotation).derivative * body.angular_velocity
         sway = body.horizontal_velocity
         return sway - about, SPEED_ROUNDING * (abs(sway) + abs(about))
 
     @inlined
     def contact_point(self, k: int, mode: int, state: Vector, memory: Vector) -> float:
         """Return the place along the base of the point that is held, or slips."""
-        part, body = self.on_base(k), self.state_of(k, state)
-        pin = part.body.pin(self.body_mode(mode, k).pivot)
-        attitude = part.body.attitude(body.rotation)
-        return self.centre_position(k, mode, state, memory) - part.body.about_pin(pin, attitude)
+        law, rotation = self.on_base(k).body, self.state_of(k, state).rotation
+        away = law.from_pivot(self.body_mode(mode, k).pivot, rotation)
+        return self.centre_position(k, mode, state, memory) - away
 
     @inlined
     def slip_memory(self, k: int) -> int:
@@ -171,7 +165,7 @@ class SlippingBodies(Chain):
             hold -= abs(self.workspace()[k * BODY_STRIDE + at.TANGENTIAL_FORCE])
             return SlidingGuards(hold / size, 1.0, 0.0)
         law, sense, rate = self.on_base(k).body, self.sense(mode, k), body.angular_velocity
-        reach = law.reach(law.pin(body_mode.pivot), law.attitude(body.rotation))
+        reach = law.reach_about(body_mode.pivot, body.rotation)
         scale = 1.0 / math.sqrt(law.gravity * law.size())
         change = slope[self.horizontal_of(k)] - reach.second_derivative * rate * rate
         change -= reach.derivative * slope[BEFORE_HORIZONTAL * k + ROTATION]
