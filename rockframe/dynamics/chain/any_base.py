@@ -163,25 +163,11 @@ class AnyBase(Base, LawNumbers):
         return self.bed().will_press(left, line, own)
 
     @kernel
-    def held(self, contact: int, left: bool) -> int:
-        """Return the contact with an end that lifted off but touches again, pressed by the base."""
+    def with_end(self, contact: int, left: bool, end: int) -> int:
+        """Return the contact with another contact of an end, where the base tells these apart."""
         if self.which == ON_PADS:
-            return self.pads().held(contact, left)
-        return self.bed().held(contact, left)
-
-    @kernel
-    def waiting(self, contact: int, left: bool) -> int:
-        """Return the contact with an end that has lifted off while the base still presses it."""
-        if self.which == ON_PADS:
-            return self.pads().waiting(contact, left)
-        return self.bed().waiting(contact, left)
-
-    @kernel
-    def unpressed(self, contact: int, left: bool) -> int:
-        """Return the contact with an end that stays held though the base no longer presses it."""
-        if self.which == ON_PADS:
-            return self.pads().unpressed(contact, left)
-        return self.bed().unpressed(contact, left)
+            return self.pads().with_end(contact, left, end)
+        return self.bed().with_end(contact, left, end)
 
     @kernel
     def engaged(self, contact: int, left: bool, line: BaseLine, own: Variables) -> int:

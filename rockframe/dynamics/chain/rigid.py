@@ -25,7 +25,7 @@ from rockframe.dynamics.chain.motion import set_inertia_loads
 from rockframe.dynamics.chain.rows import GUARDS
 from rockframe.dynamics.events import FULL, IMPACT, REST, SEPARATION, SILENT, UPLIFT
 from rockframe.dynamics.on_base import Mode
-from rockframe.dynamics.pads import CORNER_GUARDS, REENGAGE
+from rockframe.dynamics.pads import CORNER_GUARDS, ENGAGING, LEAVING, REENGAGE, TOUCHING
 from rockframe.dynamics.protocol import HELD_PLACE, IMPACT_LOSS, LAST_EVENT, REPINNING_LOSS, Ground
 from rockframe.dynamics.switching import (
     end_speed,
@@ -146,7 +146,7 @@ class RigidChain(RigidImpulses):
         """
         k, left = guard // GUARDS, guard % GUARDS < CORNER_GUARDS
         part, was = self.on_base(k), self.body_mode(mode, k)
-        waits = part.base.waiting(was.contact, left)
+        waits = part.base.with_end(was.contact, left, LEAVING)
         holds = part.flies(was.contact) or waits == was.contact
         if holds or not self.has_falling_force(k, left, mode, state, ground):
             new = self.release_tension_corners(k, left, mode, state, ground, memory)
@@ -155,7 +155,8 @@ class RigidChain(RigidImpulses):
         lost, place = memory[REPINNING_LOSS], memory[HELD_PLACE + k]
         new = self.switch_on_base(mode, guard, state, ground, memory)
         contact = self.body_mode(new, k).contact
-        if contact != part.base.unpressed(contact, left) or not self.has_sinking_corner(new, state):
+        stays = contact == part.base.with_end(contact, left, ENGAGING)
+        if not stays or not self.has_sinking_corner(new, state):
             return new
         self.blend_velocities(before, 0.0, state)
         memory[REPINNING_LOSS], memory[HELD_PLACE + k] = lost, place
@@ -174,7 +175,7 @@ class RigidChain(RigidImpulses):
         part, was, body = self.on_base(k), self.body_mode(mode, k), self.state_of(k, state)
         if not part.flies(was.contact):
             return mode
-        sliding = part.mode_for_contact(part.base.held(was.contact, left), body)
+        sliding = part.mode_for_contact(part.base.with_end(was.contact, left, TOUCHING), body)
         sliding = Mode(sliding.contact, sliding.pivot, True)
         self.find_forces(self.with_body_mode(mode, k, sliding), state, ground)
         corners = self.bearing_corners(mode)

@@ -24,7 +24,7 @@ from rockframe.dynamics.chain.slip_trials import SlipTrials
 from rockframe.dynamics.chain.slips import OFFSET, STATIC
 from rockframe.dynamics.events import IMPACT, REST, SILENT, STICK
 from rockframe.dynamics.on_base import HOLD, SLIP, Mode
-from rockframe.dynamics.pads import CORNER_GUARDS
+from rockframe.dynamics.pads import CORNER_GUARDS, LEAVING
 from rockframe.dynamics.protocol import HELD_PLACE, IMPACT_LOSS, LAST_EVENT, Ground
 
 FRICTION_CHANGED: Final = -1
@@ -108,7 +108,7 @@ class SlippingRigidChain(SlipTrials):
                     rises = self.end_accelerations(k, mode, state, ground)
                     line = with_accelerations(line, rises[0], rises[1])
                     if part.base.will_press(left, line, ()):
-                        contact = part.base.waiting(contact, left)
+                        contact = part.base.with_end(contact, left, LEAVING)
             mode = self.with_body_mode(mode, k, Mode(contact, body_mode.pivot, body_mode.slides))
         return mode
 
