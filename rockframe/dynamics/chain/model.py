@@ -20,7 +20,7 @@ from rockframe.dynamics.chain.returned import with_workspace
 from rockframe.dynamics.chain.rigid import SET_MEMORY, RigidChain
 from rockframe.dynamics.chain.rigid_friction import SlippingRigidChain
 from rockframe.dynamics.chain.rows import BASE_COLUMNS, GUARDS, body_row, chain_numbers
-from rockframe.dynamics.chain.slips import SlippingBodies
+from rockframe.dynamics.chain.slips import OFFSET, SlippingBodies
 from rockframe.dynamics.chain.system import Chain
 from rockframe.dynamics.links import GUARDS as GUARDS_OF_LINK
 from rockframe.dynamics.links import SteadyForce
@@ -140,16 +140,7 @@ def chain_model(
             ),
             *link_columns(len(ties), tied), *((MOMENT_OF_LINKS,) if ties else ()),
         ),
-        memory=(
-            *MEMORY, *(f"held_place_of_{k}" for k in range(1, count)), "body_of_event",
-            *(SET_MEMORY if isinstance(system, RigidChain) else ()),
-            *(
-                f"{name}_of_{k}"
-                for k in range(count if frictions else 0)
-                for name in ("slip_offset", "peak_slip_left", "peak_slip_right")
-            ),
-            *(("link_of_event",) if ties else ()),
-        ),
+        memory=_memory_names(system),
         shows_bodies=count > 1,
         links=tied,
         selects=True,
@@ -170,6 +161,21 @@ def chain_model(
             [each for k, both in enumerate(limits, 1) for each in (*both, *_weights(count, k))]
         ),
     )  # fmt: skip
+
+
+def _memory_names(system: Chain) -> tuple[str, ...]:
+    """Return the names of the numbers that a chain remembers."""
+    count = system.body_count
+    names = [*MEMORY, *(f"held_place_of_{k}" for k in range(1, count)), "body_of_event"]
+    if isinstance(system, RigidChain):
+        names += SET_MEMORY
+    if isinstance(system, SlippingBodies):
+        names += [
+            f"{name}_of_{k}"
+            for k in range(count)
+            for name in ("slip_offset", "peak_slip_left", "peak_slip_right")
+        ]
+    return (*names, "link_of_event") if isinstance(system, LinkedBodies) else tuple(names)
 
 
 def _weights(count: int, k: int) -> Vector:
@@ -310,7 +316,8 @@ def _initial(system: Chain, starts: StartConditions, start: Start) -> tuple[int,
     """Return mode, state and memory at the start: all at rest but body 0, as `start` says."""
     count = len(starts.bodies)
     state = np.zeros(2 * BODY_DOF * count + system.variables())
-    memory = np.zeros(len(MEMORY) + count)
+    memory = np.zeros(len(_memory_names(system)))
+    system.reset_event(memory)
     placements, mode = _initial_placements(system.on_base(0), starts, start), 0
     for k, placement in enumerate(placements):
         moving = k == 0
@@ -331,14 +338,13 @@ def _initial(system: Chain, starts: StartConditions, start: Start) -> tuple[int,
         )
         mode = system.with_body_mode(mode, k, body_mode)
     if isinstance(system, RigidChain):
-        memory = np.concatenate([memory, [1.0, 0.0, 0.0]])
         system.project_onto_contacts(mode, state, memory)
     if isinstance(system, LinkedRigidChain):
         system.store_held_place(mode, state, memory)
     if isinstance(system, SlippingBodies):
-        places = [system.contact_point(k, mode, state, memory) for k in range(count)]
-        memory = np.concatenate([memory, *([-place, 0.0, 0.0] for place in places)])
+        for k in range(count):
+            place = system.contact_point(k, mode, state, memory)
+            memory[system.slip_memory(k) + OFFSET] = -place
     if isinstance(system, LinkedBodies):
-        memory = np.append(memory, 0.0)
         mode = system.start_links(mode, state)
     return mode, state, memory

@@ -171,7 +171,7 @@ class SlippingRigidChain(SlipTrials):
     def store_slips(self, mode: int, state: Vector, memory: Vector) -> None:
         """Store the slips of all bodies before an event, and note which of them slip."""
         self.update_peak_slips(mode, state, memory)
-        self.write_trial_slips(mode)
+        self.restore_trial_slips(mode, False)
         for k in range(self.body_count):
             memory[self.slip_memory(k) + OFFSET] += self.contact_point(k, mode, state, memory)
             self.workspace()[k * BODY_STRIDE + at.STARTING_SENSE] = 0.0
@@ -242,7 +242,7 @@ class SlippingRigidChain(SlipTrials):
         """Return the mode whose corners and slips agree with the forces, by trial of sets."""
         sets, before = HELD_PLACE + self.body_count, self.bearing_corners(mode)
         self.project_onto_contacts(mode, state, memory)  # of bodies that were held and may slip
-        self.write_trial_slips(mode)
+        self.restore_trial_slips(mode, False)
         flying, in_tension = self.with_bearing_corners(mode, 0, 0), self.tension_corners(mode)
         closed, count, free = before | self.resting_corners(mode, state), 0, mode
         corners = BearingCorners(before, 0, -1, 0)
@@ -263,7 +263,7 @@ class SlippingRigidChain(SlipTrials):
             closed = before | self.resting_corners(stopped, state)
         ways = corners.admissible
         if corners.admissible == 0 and corners.held == 0:
-            self.write_trial_slips(mode)
+            self.restore_trial_slips(mode, False)
             self.find_forces(mode, state, ground)
             for k in range(self.body_count):
                 self.violates_friction(k, mode, state)

@@ -60,20 +60,12 @@ class SlipTrials(SlipperyBases, RigidChain):
             return self.sense(mode, k)
         return 0.0
 
-    @kernel
-    def write_trial_slips(self, mode: int) -> None:
-        """Write the senses of slips of a mode as those of the present trial."""
-        work = self.workspace()
-        for k in range(self.body_count):
-            work[k * BODY_STRIDE + at.SLIP_SENSE] = self.sense_or_zero(mode, k)
-
     @inlined
     def restore_trial_slips(self, mode: int, impulsive: bool) -> None:
         """Restore the slips of a mode for the next trial; none in an impact, where all are held."""
-        self.write_trial_slips(mode)
-        if impulsive:
-            for k in range(self.body_count):
-                self.workspace()[k * BODY_STRIDE + at.SLIP_SENSE] = 0.0
+        for k in range(self.body_count):
+            sense = 0.0 if impulsive else self.sense_or_zero(mode, k)
+            self.workspace()[k * BODY_STRIDE + at.SLIP_SENSE] = sense
 
     @kernel
     def with_rigid_slip(self, k: int, bears: int, mode: int) -> int:
