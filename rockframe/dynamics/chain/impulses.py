@@ -13,7 +13,6 @@ from rockframe.compiled import Vector, inlined, kernel
 from rockframe.dynamics.chain import rows as at
 from rockframe.dynamics.chain.corner_guards import CornerGuards
 from rockframe.dynamics.chain.impact import (
-    BOTH,
     LEFT_ONLY,
     NOISE,
     RIGHT_ONLY,
@@ -128,17 +127,6 @@ class RigidImpulses(CornerGuards):
         work[i + at.LANDING_NORMAL] += normal
         work[i + at.LANDING_MOMENT] += moment
         work[i + at.LANDING_TANGENTIAL] += along
-
-    @inlined
-    def landed_ends(self, k: int, left: bool, mode: int, new: int) -> int:
-        """Return the set of ends that have landed on a deformable base in an event.
-
-        Both ends of a body that flew may have landed together.
-        """
-        part = self.on_base(k)
-        both = part.flies(self.body_mode(mode, k).contact)
-        both &= part.base.is_held(self.body_mode(new, k).contact, not left)
-        return BOTH if both else LEFT_ONLY if left else RIGHT_ONLY
 
     @kernel
     def undo_impulses(self, k: int, scales: LandingScales, mode: int, state: Vector) -> None:

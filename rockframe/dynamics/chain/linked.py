@@ -88,14 +88,10 @@ class LinkMechanics(LinkPoints):
             poses[j + LINK_FORCE_Y] += y
 
     @inlined
-    def link_force_x(self, k: int) -> float:
-        """Return the last resultant of links on a body, to the right, over the reference mass."""
-        return float(self.poses()[k * POSE_STRIDE + LINK_FORCE_X])
-
-    @inlined
-    def link_force_y(self, k: int) -> float:
-        """Return the last resultant of links on a body, upwards, over the reference mass."""
-        return float(self.poses()[k * POSE_STRIDE + LINK_FORCE_Y])
+    def resultant_of_links(self, k: int) -> tuple[float, float]:
+        """Return the last resultant of links on a body, to the right and up, per reference mass."""
+        poses, j = self.poses(), k * POSE_STRIDE
+        return poses[j + LINK_FORCE_X], poses[j + LINK_FORCE_Y]
 
     @kernel
     def guards_in(self, mode: int, state: Vector, slope: Slope, ground: Ground) -> Guards:

@@ -284,7 +284,10 @@ class RigidChain(RigidImpulses):
         scaled, so that these do not rebound faster than restitution allows. `before` is the mode
         before the event.
         """
-        ends = self.landed_ends(k, left, before, mode)
+        part = self.on_base(k)
+        both = part.flies(self.body_mode(before, k).contact)  # both ends may have landed together
+        both &= part.base.is_held(self.body_mode(mode, k).contact, not left)
+        ends = BOTH if both else LEFT_ONLY if left else RIGHT_ONLY
         free = self.release_all(mode, state, memory)
         self.project_onto_contacts(free, state, memory)
         kinetic, flying = self.energies(free, state).kinetic, self.with_bearing_corners(free, 0, 0)
@@ -294,7 +297,7 @@ class RigidChain(RigidImpulses):
         new = self.choose_bearing_corners(free, closed, closed, 0, state, ground, memory)
         new = self.hold_small_rebounds(closed, new, state, ground, memory)
         new = self.rest_repeatedly(new, state, ground, memory)
-        stop_negligible_rebound(self, self.on_base(k), k, left, new, state, ground, memory)
+        stop_negligible_rebound(self, part, k, left, new, state, ground, memory)
         memory[LAST_EVENT] = event
         return new
 

@@ -148,7 +148,7 @@ class ChainNumbers(NamedTuple):
     rows: Vector  # the rows of all bodies, then the workspace
 
 
-class ChainArray(ReturnedArrays, StateAccess, CalledBySteps, ChainNumbers):  # pyright: ignore[reportGeneralTypeIssues]
+class ChainArray(ReturnedArrays, StateAccess, CalledBySteps, ChainNumbers):
     """Access to the rows and the workspace of a chain. A mixin of systems."""
 
     __slots__ = ()
