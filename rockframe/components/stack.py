@@ -80,18 +80,18 @@ class Stack(Component):
             interfaces = [interfaces] * max(len(bodies) - 1, 0)
         interfaces = checked_list(interfaces, owner="Stack", name="interfaces", of="bases")
         distances = None if offsets is None else [
-            to_si(one, LENGTH, owner="Stack", name=f"offsets[{i}]") for i, one in
+            to_si(offset, LENGTH, owner="Stack", name=f"offsets[{i}]") for i, offset in
             enumerate(checked_list(offsets, owner="Stack", name="offsets", of="lengths"))
         ]  # fmt: skip
         faults = [
-            f"a body of a stack is a Block, got {short_repr(one)}"
-            for one in bodies
-            if not isinstance(one, Block)
+            f"a body of a stack is a Block, got {short_repr(body)}"
+            for body in bodies
+            if not isinstance(body, Block)
         ]
         faults += [
-            f"an interface is a base such as TwoSpringSupport, got {short_repr(one)}"
-            for one in interfaces
-            if not isinstance(one, Component) or isinstance(one, Block)
+            f"an interface is a base such as TwoSpringSupport, got {short_repr(interface)}"
+            for interface in interfaces
+            if not isinstance(interface, Component) or isinstance(interface, Block)
         ]
         if not 2 <= len(bodies) <= MAX_BODIES:
             faults.append(f"it has 2 to {MAX_BODIES} bodies, got {len(bodies)}")
@@ -107,12 +107,13 @@ class Stack(Component):
             )
         raise_faults("Stack", faults)
         distances = [0.0] * (len(bodies) - 1) if distances is None else distances
-        _check_overhang([one.si for one in bodies], distances)
+        sizes = tuple(body.si for body in bodies)
+        _check_overhang(sizes, distances)
         values = SIValues(
             bodies=tuple(bodies), interfaces=tuple(interfaces), offsets=tuple(distances)
         )
         object.__setattr__(self, "given", values)
-        object.__setattr__(self, "si", StackSI(tuple(one.si for one in bodies), (*distances, 0.0)))
+        object.__setattr__(self, "si", StackSI(sizes, (*distances, 0.0)))
 
     @property
     def bodies(self) -> tuple[Block, ...]:

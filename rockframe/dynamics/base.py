@@ -175,18 +175,11 @@ class Base:
         return False
 
     @kernel
-    def held(self, contact: int, left: bool) -> int:
-        """Return the contact with an end that lifted off but touches again, pressed by the base."""
-        return contact
+    def with_end(self, contact: int, left: bool, end: int) -> int:
+        """Return the contact with another contact of an end, where the base tells these apart.
 
-    @kernel
-    def waiting(self, contact: int, left: bool) -> int:
-        """Return the contact with an end that has lifted off while the base still presses it."""
-        return contact
-
-    @kernel
-    def unpressed(self, contact: int, left: bool) -> int:
-        """Return the contact with an end that remains held though the base no longer presses it."""
+        `end` is `TOUCHING`, `LEAVING` or `ENGAGING` of :mod:`rockframe.dynamics.pads`.
+        """
         return contact
 
     @kernel

@@ -198,6 +198,16 @@ class Body(NamedTuple):
         """Return h sin a - e cos a, the centre of mass to the right of the held point [m]."""
         return self.height * attitude.sine - pin * attitude.cosine
 
+    @inlined
+    def reach_about(self, pivot: int, rotation: float) -> Reach:
+        """Return the same as `reach`, from a pivot and a rotation."""
+        return self.reach(self.pin(pivot), self.attitude(rotation))
+
+    @inlined
+    def from_pivot(self, pivot: int, rotation: float) -> float:
+        """Return the same as `about_pin`, from a pivot and a rotation."""
+        return self.about_pin(self.pin(pivot), self.attitude(rotation))
+
     @kernel
     def size(self) -> float:
         """Return half the width plus the height of the centre of mass, a scale of levers [m]."""

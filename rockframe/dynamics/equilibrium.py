@@ -230,13 +230,14 @@ class _Step:
 
     def __init__(self, held: HeldBodies, poses: Sequence[Pose], guess: ChainEquilibrium) -> None:
         self.held, self.chain, self.poses, self.guess = held, held.chain, poses, guess
-        self.coordinates = np.array([value for one in poses for value in one.state[:2]])
+        self.coordinates = np.array([value for pose in poses for value in pose.state[:2]])
         self.sizes = held.chain.sizes
         self.links = held.chain.link_forces(poses, elongations=guess.elongations.tolist())
         self.link_forces = guess.link_forces.copy()
-        each = enumerate(self.links)
         self.stiff_directions = [
-            one for i, link_force in each for one in self._stiff_directions_of(i, link_force)
+            stiff
+            for i, link_force in enumerate(self.links)
+            for stiff in self._stiff_directions_of(i, link_force)
         ]
         # derivatives of coordinates by the free ones, over the sizes of these
         self.constraint = held.chain.constraint_matrix(poses) * self.sizes
@@ -245,13 +246,13 @@ class _Step:
         self.base_stiffness = base_stiffness(held.chain, poses, from_rest=True)
         self.matrix, misfits = self._equations()
         try:
-            found = np.linalg.solve(self.matrix, misfits)
+            solution = np.linalg.solve(self.matrix, misfits)
         except np.linalg.LinAlgError:
-            found = np.full(len(misfits), math.nan)
-        self.is_bounded = bool((np.abs(found) < DIVERGED).all())
+            solution = np.full(len(misfits), math.nan)
+        self.is_bounded = bool((np.abs(solution) < DIVERGED).all())
         if self.is_bounded:
-            self.step = self.constraint @ found[: self.free.sum()]
-            forces = held.chain.weight * found[self.free.sum() :]
+            self.step = self.constraint @ solution[: self.free.sum()]
+            forces = held.chain.weight * solution[self.free.sum() :]
             self._set_link_changes(forces[: len(self.stiff_directions)].tolist())
             couples = forces[len(self.stiff_directions) :]
             self.couple_change = self.sizes[1] / self.sizes[0] * couples

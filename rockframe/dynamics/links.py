@@ -278,26 +278,24 @@ class Tie(NamedTuple):
     brittle: float  # 1 if it breaks then, 0 if it yields
     pushes: float  # 1 if it also resists compression
 
+    def spring_elongation(self, state: int, stretch: Stretch, own: Vector) -> float:
+        """Return x of the spring: at its strength while it yields, zero while it is slack."""
+        if state == YIELDING:
+            return self.limit
+        if state == SLACK:
+            return -self.limit if self.pushes != 0.0 else 0.0
+        return stretch.elongation - self.slack - own[0]
+
     def force(self, state: int, stretch: Stretch, own: Vector) -> float:
-        """Return k x + c l'; k x is the strength while it yields, and zero while it is slack."""
+        """Return k x + c l'."""
         if state == BROKEN:
             return 0.0
-        x = stretch.elongation - self.slack - own[0]
-        if state == YIELDING:
-            x = self.limit
-        elif state == SLACK:
-            x = -self.limit if self.pushes != 0.0 else 0.0
+        x = self.spring_elongation(state, stretch, own)
         return self.stiffness * x + self.damping * stretch.rate
 
     def energy(self, state: int, stretch: Stretch, own: Vector) -> float:
         """Return k x^2/2."""
-        x = stretch.elongation - self.slack - own[0]
-        if state == BROKEN:
-            x = 0.0
-        elif state == YIELDING:
-            x = self.limit
-        elif state == SLACK:
-            x = self.limit if self.pushes != 0.0 else 0.0
+        x = 0.0 if state == BROKEN else self.spring_elongation(state, stretch, own)
         return 0.5 * self.stiffness * x * x
 
     def power(self, state: int, stretch: Stretch, own: Vector) -> float:
@@ -339,10 +337,8 @@ class Tie(NamedTuple):
 
     def guard(self, which: int, state: int, stretch: Stretch, own: Vector) -> tuple[float, float]:
         """Return the elongation until the end of the state, or the rate that must not reverse."""
-        x, sign = stretch.elongation - self.slack - own[0], 1.0
-        value, rate = 1.0, 0.0
-        if which == UPPER:
-            sign = -1.0
+        x, value = stretch.elongation - self.slack - own[0], 1.0
+        sign = -1.0 if which == UPPER else 1.0
         if state == TAUT and which == UPPER:
             value = self.limit - x
         elif state == TAUT and self.pushes != 0.0:
@@ -361,8 +357,7 @@ class Tie(NamedTuple):
             sign = 0.0
         if sign == 0.0 or value == math.inf:
             return 1.0, 0.0
-        rate = sign * stretch.rate
-        return value, rate
+        return value, sign * stretch.rate
 
     def reversal_guard(self, sign: float, stretch: Stretch) -> tuple[float, float]:
         """Return the rate that must not reverse, times a time: guards of links are lengths."""

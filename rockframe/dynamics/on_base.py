@@ -268,7 +268,7 @@ class BodyOnBase(NamedTuple):
         `push` is the force of the hold, `rise` the speed at which the end rises per unit of slip.
         """
         body, rate = self.body, state.angular_velocity
-        reach = body.reach(body.pin(mode.pivot), body.attitude(state.rotation))
+        reach = body.reach_about(mode.pivot, state.rotation)
         upwards = 1.0 if rise < 0.0 else -1.0
         hold = -upwards * push / body.gravity
         if abs(rise) < NEGLIGIBLE_LIFT:
@@ -287,13 +287,11 @@ class BodyOnBase(NamedTuple):
         return 0.5 * (self.body.inertia * rate * rate + speed * speed + across * across)
 
     @kernel
-    def horizontal_position(
-        self, mode: Mode, state: BodyState, attitude: Attitude, held_at: float
-    ) -> float:
+    def horizontal_position(self, mode: Mode, state: BodyState, held_at: float) -> float:
         """Return x of the centre of mass: about the held point, or free [m]."""
         if self.is_free(mode):
             return state.horizontal
-        return held_at + self.body.about_pin(self.body.pin(mode.pivot), attitude)
+        return held_at + self.body.from_pivot(mode.pivot, state.rotation)
 
     @kernel
     def end_accelerations_at(
@@ -309,12 +307,9 @@ class BodyOnBase(NamedTuple):
         return self.base.energy(self.body.base_line_at(state), own)
 
     @kernel
-    def base_columns(
-        self, mode: Mode, state: BodyState, attitude: Attitude, own: Any
-    ) -> tuple[float, ...]:
+    def base_columns(self, mode: Mode, state: BodyState, own: Any) -> tuple[float, ...]:
         """Return the base's columns in the results."""
-        line = self.body.base_line(state, attitude)
-        return self.base.observed(self.contact_with_force(mode), line, own)
+        return self.base.observed(self.contact_with_force(mode), self.body.base_line_at(state), own)
 
     @inlined
     def response_in(

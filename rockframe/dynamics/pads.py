@@ -114,10 +114,10 @@ class Pads(Base, PadNumbers):
         return contact + step * (state - self.law_state(contact, left))
 
     @kernel
-    def with_corner(self, contact: int, left: bool, corner: int) -> int:
+    def with_end(self, contact: int, left: bool, end: int) -> int:
         """Return both corners' contacts with a new one of one corner, its law in state 0."""
         step = 1 if left else CORNER
-        new = contact + step * (corner - corner_contact(contact, left))
+        new = contact + step * (end - corner_contact(contact, left))
         return self.with_state(new, left, 0)
 
     @inlined
@@ -275,11 +275,11 @@ class Pads(Base, PadNumbers):
         """
         corner, other = corner_contact(contact, left), corner_contact(contact, not left)
         if corner in (RELAXING, LEAVING) and which == LEAVE:
-            return EndEvent(self.with_corner(contact, left, CLEAR), SILENT, True)
+            return EndEvent(self.with_end(contact, left, CLEAR), SILENT, True)
         if corner == LEAVING and which == REENGAGE:
-            return EndEvent(self.with_corner(contact, left, RELAXING), SILENT, False)
+            return EndEvent(self.with_end(contact, left, RELAXING), SILENT, False)
         if corner == ENGAGING and which == REENGAGE:
-            return EndEvent(self.with_corner(contact, left, TOUCHING), SILENT, False)
+            return EndEvent(self.with_end(contact, left, TOUCHING), SILENT, False)
         was, other_speed = other, -self.corner(not left, line).speed
         event, crossed = REENGAGEMENT, False
         if corner < RELAXING:
@@ -305,9 +305,9 @@ class Pads(Base, PadNumbers):
             if other == LEAVING:
                 other = RELAXING
             corner = TOUCHING
-        both = self.with_corner(contact, left, corner)
+        both = self.with_end(contact, left, corner)
         if other != was:
-            both = self.with_corner(both, not left, other)
+            both = self.with_end(both, not left, other)
         return EndEvent(both, event, crossed)
 
     @kernel
@@ -318,7 +318,7 @@ class Pads(Base, PadNumbers):
     @inlined
     def follows(self, contact: int, left: bool) -> int:
         """Return the contact with a corner that its pad follows without a force."""
-        return self.with_corner(contact, left, RELAXING)
+        return self.with_end(contact, left, RELAXING)
 
     @inlined
     def following_rate(self) -> float:
@@ -333,7 +333,7 @@ class Pads(Base, PadNumbers):
     @kernel
     def released(self, contact: int, left: bool, line: BaseLine, own: Any) -> int:
         """Return the contact after a sliding corner has lifted off."""
-        return self.with_corner(contact, left, self.released_corner(left, line, own))
+        return self.with_end(contact, left, self.released_corner(left, line, own))
 
     @kernel
     def presses(self, contact: int, left: bool, line: BaseLine, own: Any) -> bool:
@@ -348,35 +348,20 @@ class Pads(Base, PadNumbers):
         return self.law.force_rate(0, self.corner(left, line), self.of_corner(own, left)) > 0.0
 
     @kernel
-    def held(self, contact: int, left: bool) -> int:
-        """Return the contact with a corner that touches."""
-        return self.with_corner(contact, left, TOUCHING)
-
-    @kernel
-    def waiting(self, contact: int, left: bool) -> int:
-        """Return the contact of a corner that has lifted off while its pad still presses it."""
-        return self.with_corner(contact, left, LEAVING)
-
-    @kernel
-    def unpressed(self, contact: int, left: bool) -> int:
-        """Return the contact of a corner that stays held though its pad no longer presses it."""
-        return self.with_corner(contact, left, ENGAGING)
-
-    @kernel
     def engaged(self, contact: int, left: bool, line: BaseLine, own: Any) -> int:
         """Return the contact after a corner has landed on its pad and its body is held."""
         if self.reaction(contact, left, line, own) < 0.0:
             # the hold made the corner faster than its pad; released, it would land again endlessly
-            return self.with_corner(contact, left, ENGAGING)
+            return self.with_end(contact, left, ENGAGING)
         return contact
 
     @kernel
     def disturbed(self, contact: int) -> int:
         """Return the contact after an event elsewhere has changed the corners' speeds."""
         if corner_contact(contact, True) == LEAVING:
-            contact = self.with_corner(contact, True, RELAXING)
+            contact = self.with_end(contact, True, RELAXING)
         if corner_contact(contact, False) == LEAVING:
-            contact = self.with_corner(contact, False, RELAXING)
+            contact = self.with_end(contact, False, RELAXING)
         return contact
 
     @kernel

@@ -46,7 +46,7 @@ COLUMNS: Final = (*BODY_COLUMNS, *CORNER_REACTIONS)
 
 
 # indices of columns that systems built on this one change
-_COLUMN_NAMES: Final = [one.name for one in COLUMNS]
+_COLUMN_NAMES: Final = [column.name for column in COLUMNS]
 BASE_SHEAR: Final = _COLUMN_NAMES.index("base_shear")
 HORIZONTAL_REACTION: Final = _COLUMN_NAMES.index("horizontal_reaction")
 VERTICAL_REACTION: Final = _COLUMN_NAMES.index("vertical_reaction")

@@ -150,7 +150,7 @@ class SingleBody(StateAccess, SingleBodyNumbers):
             body.angular_velocity,
             body.vertical,
             body.vertical_velocity,
-            self.part.horizontal_position(own_mode, body, attitude, memory[HELD_PLACE]),
+            self.centre_position(0, mode, state, memory),
             shear,
             self.part.horizontal_velocity(own_mode, body, attitude),
             slope[ROTATION],
@@ -158,9 +158,7 @@ class SingleBody(StateAccess, SingleBodyNumbers):
             slope[VERTICAL],
             shear,
             slope[VERTICAL] + self.part.body.gravity + ground.y,
-        ) + self.part.base_columns(
-            own_mode, body, attitude, self.part.base.read(state, BASE_VARIABLES)
-        )
+        ) + self.part.base_columns(own_mode, body, self.part.base.read(state, BASE_VARIABLES))
 
     @kernel
     def body_mode(self, mode: int, k: int) -> Mode:
@@ -175,9 +173,8 @@ class SingleBody(StateAccess, SingleBodyNumbers):
     @kernel
     def centre_position(self, k: int, mode: int, state: Vector, memory: Vector) -> float:
         """Return x of the centre of mass: about the held point, or free."""
-        own_mode, body = self.part.mode_of(mode), self.state_of(k, state)
-        attitude = self.part.body.attitude(body.rotation)
-        return self.part.horizontal_position(own_mode, body, attitude, memory[HELD_PLACE])
+        body = self.state_of(k, state)
+        return self.part.horizontal_position(self.part.mode_of(mode), body, memory[HELD_PLACE])
 
     @kernel
     def response(

@@ -285,8 +285,8 @@ class SlideRock(SlideMotion):
         bearing, rate = self.bearing_in(mode), state[DOF + ROTATION]
         if bearing == FULL:
             return False
-        side, found = self.side(bearing), self.contact(mode, state, loads)
-        restoring = -side * found.rotation - found.rise / (self.left + self.right)
+        side, contact = self.side(bearing), self.contact(mode, state, loads)
+        restoring = -side * contact.rotation - contact.rise / (self.left + self.right)
         limit = REST_AMPLITUDE * math.atan2(self.distance(side), self.height)
         return restoring > 0.0 and rate * rate < 2.0 * restoring * limit
 

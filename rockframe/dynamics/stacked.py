@@ -184,13 +184,8 @@ class Stacked(StateAccess):
     def columns_of_bases(self, mode: int, state: Vector) -> tuple[float, ...]:
         """Return the columns of both bases."""
         modes, states = self.modes_in(mode), self.states_in(state)
-        return self.upper.base_columns(
-            modes.upper, states.upper, self.upper.body.attitude(states.upper.rotation),
-            self.upper_own(state),
-        ) + self.lower.base_columns(
-            modes.lower, states.lower, self.lower.body.attitude(states.lower.rotation),
-            self.lower_own(state),
-        )  # fmt: skip
+        above = self.upper.base_columns(modes.upper, states.upper, self.upper_own(state))
+        return above + self.lower.base_columns(modes.lower, states.lower, self.lower_own(state))
 
 
 @kernel

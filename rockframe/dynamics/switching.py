@@ -36,6 +36,7 @@ from rockframe.dynamics.on_base import (
     share_at_lift_off,
     speed_noise,
 )
+from rockframe.dynamics.pads import ENGAGING, LEAVING, TOUCHING
 from rockframe.dynamics.protocol import (
     HELD_PLACE,
     IMPACT_LOSS,
@@ -253,15 +254,15 @@ def mode_after_separation(
         memory[LAST_EVENT] = SILENT
         speed = following_speed(system, part, k, left, state)
         set_end_speed(system, part, k, left, speed, 1.0, state)
-        contact = part.base.unpressed(was.contact, left)
+        contact = part.base.with_end(was.contact, left, ENGAGING)
         return system.with_body_mode(mode, k, Mode(contact, was.pivot, was.slides))
     if presses and flies and not part.base.touches(was.contact, not left):
         rises = system.end_accelerations(k, new, state, ground)
         if part.base.will_press(left, with_accelerations(line, rises[0], rises[1]), own):
-            contact = part.base.held(new_body_mode.contact, left)
+            contact = part.base.with_end(new_body_mode.contact, left, TOUCHING)
             return system.with_body_mode(new, k, Mode(contact, was.pivot, True))
     elif presses and repins and not flies:
-        waiting = part.base.waiting(new_body_mode.contact, left)
+        waiting = part.base.with_end(new_body_mode.contact, left, LEAVING)
         return system.with_body_mode(new, k, Mode(waiting, new_body_mode.pivot, False))
     return new
 

@@ -20,17 +20,16 @@ from rockframe.dynamics.chain.link_rows import (
     REST_ENERGY,
     ChainLink,
     LinkRows,
+    link_columns,
     link_row,
     padded_state_count,
 )
-from rockframe.dynamics.chain.linked import with_workspace
+from rockframe.dynamics.chain.returned import with_workspace
 from rockframe.dynamics.links import GUARDS, LinkNumbers, Stretch
 from rockframe.dynamics.pads import ROUNDING
 from rockframe.dynamics.protocol import (
     LAST_EVENT,
     LINK_LOSS,
-    MEMORY,
-    Column,
     ContactModel,
     Energies,
     Ground,
@@ -38,13 +37,10 @@ from rockframe.dynamics.protocol import (
     OnRigidGround,
     Slope,
     Start,
-    column_of,
 )
 from rockframe.dynamics.trigonometry import sine_cosine
 
 FRAME_COLUMNS: Final = len(frame.COLUMNS)
-LINK_PLACE: Final = len(MEMORY)
-"""Index into the memory: the tendon of the last event, counted from 1; 0 for none."""
 
 
 class FrameTendonNumbers(NamedTuple):
@@ -114,11 +110,10 @@ class FrameWithTendons(FrameTendonNumbers, LinkRows, OnRigidGround):
     @kernel
     def pull(self, mode: int, state: Vector) -> float:
         """Return the force of all tendons of all columns together."""
-        link, force = self.tendon_stretch(mode, state, 0.0), 0.0
+        stretch, force = self.tendon_stretch(mode, state, 0.0), 0.0
         for i in range(self.link_count):
-            row = self.row_of_link(i)
-            law = self.law_of(row)
-            force += law.force(self.link_state(mode, row), link, self.link_variables(i, state))
+            _, law, link_state, own = self.link(i, mode, state)
+            force += law.force(link_state, stretch, own)
         return self.column_count * force
 
     @kernel
@@ -132,13 +127,12 @@ class FrameWithTendons(FrameTendonNumbers, LinkRows, OnRigidGround):
             return out
         restoring = self.pull(mode, state) * self.lever(state[0])
         inertia = self.rocking.corner(rocking_mode).inertia
-        link, dissipated = self.tendon_stretch(mode, state, 0.0), 0.0
+        stretch, dissipated = self.tendon_stretch(mode, state, 0.0), 0.0
+        count = self.law.variables()
         for i in range(self.link_count):
-            row, own = self.row_of_link(i), self.link_variables(i, state)
-            law, count = self.law_of(row), self.law.variables()
-            link_state = self.link_state(mode, row)
-            dissipated += law.power(link_state, link, own)
-            law.rates(link_state, link, own, view_of(out, 1 + i * count, count))
+            _, law, link_state, own = self.link(i, mode, state)
+            dissipated += law.power(link_state, stretch, own)
+            law.rates(link_state, stretch, own, view_of(out, 1 + i * count, count))
         out[0] = slope[0] - self.rocking.side(rocking_mode) * restoring / inertia
         out[1 + self.variables()] = self.column_count * dissipated
         out[2 + self.variables()] = slope[2]
@@ -150,11 +144,10 @@ class FrameWithTendons(FrameTendonNumbers, LinkRows, OnRigidGround):
         rocking_mode = mode % frame.MODES
         if rocking_mode == frame.RESTING:
             return 0.0, 0.0
-        link, dissipated = self.tendon_stretch(mode, state, 0.0), 0.0
+        stretch, dissipated = self.tendon_stretch(mode, state, 0.0), 0.0
         for i in range(self.link_count):
-            row = self.row_of_link(i)
-            law = self.law_of(row)
-            dissipated += law.power(self.link_state(mode, row), link, self.link_variables(i, state))
+            _, law, link_state, own = self.link(i, mode, state)
+            dissipated += law.power(link_state, stretch, own)
         return self.column_count * dissipated, self.rocking.powers(
             rocking_mode, state, slope, ground
         )[1]
@@ -173,24 +166,21 @@ class FrameWithTendons(FrameTendonNumbers, LinkRows, OnRigidGround):
             restoring = self.pull(mode, state) * self.lever(0.0) / (height * self.rocking.gravity)
             values[frame.UPLIFT_ON_RIGHT] += restoring
             values[frame.UPLIFT_ON_LEFT] += restoring
-        link = self.tendon_stretch(mode, state, slope[0])
+        stretch = self.tendon_stretch(mode, state, slope[0])
         for i in range(self.link_count):
-            row = self.row_of_link(i)
-            law, link_state = self.law_of(row), self.link_state(mode, row)
+            _, law, link_state, own = self.link(i, mode, state)
             for which in range(GUARDS):
                 j = frame.GUARDS + GUARDS * i + which
                 values[j], changes[j] = 1.0, 0.0
                 if rocking_mode != frame.RESTING:
-                    values[j], changes[j] = law.guard(
-                        which, link_state, link, self.link_variables(i, state)
-                    )
+                    values[j], changes[j] = law.guard(which, link_state, stretch, own)
         return Guards(values, changes)
 
     @kernel
     def switch(self, mode: int, guard: int, state: Vector, ground: Ground, memory: Vector) -> int:
         """Let columns lift off or land, or change the state of a tendon; return the new mode."""
-        rocking_mode = mode % frame.MODES
-        memory[LINK_PLACE] = 0.0
+        rocking_mode, link_of_event = mode % frame.MODES, len(memory) - 1
+        memory[link_of_event] = 0.0
         if guard < frame.GUARDS:
             restoring = self.pull(mode, state) * self.lever(0.0) / self.rocking.right.inertia
             new = self.rocking.switch_with_restoring(
@@ -198,24 +188,22 @@ class FrameWithTendons(FrameTendonNumbers, LinkRows, OnRigidGround):
             )
             return mode - rocking_mode + new
         i = (guard - frame.GUARDS) // GUARDS
-        row, link = self.row_of_link(i), self.tendon_stretch(mode, state, 0.0)
-        link_state, law = self.link_state(mode, row), self.law_of(row)
+        row, law, link_state, own = self.link(i, mode, state)
         which = guard - frame.GUARDS - GUARDS * i
-        event = law.switch(which, link_state, link, self.link_variables(i, state))
+        event = law.switch(which, link_state, self.tendon_stretch(mode, state, 0.0), own)
         memory[LAST_EVENT] = event.event
         memory[LINK_LOSS] += self.column_count * event.lost
-        memory[LINK_PLACE] = i + 1.0
+        memory[link_of_event] = i + 1.0
         return mode + int(row[PLACE_VALUE]) * (event.state - link_state)
 
     @kernel
     def energies(self, mode: int, state: Vector) -> Energies:
         """Return the energies of columns, beam and tendons."""
         energies = self.rocking.energies(mode % frame.MODES, state)
-        link, stored, at_rest = self.tendon_stretch(mode, state, 0.0), 0.0, 0.0
+        stretch, stored, at_rest = self.tendon_stretch(mode, state, 0.0), 0.0, 0.0
         for i in range(self.link_count):
-            row = self.row_of_link(i)
-            law = self.law_of(row)
-            stored += law.energy(self.link_state(mode, row), link, self.link_variables(i, state))
+            row, law, link_state, own = self.link(i, mode, state)
+            stored += law.energy(link_state, stretch, own)
             at_rest += row[REST_ENERGY]
         elastic = self.column_count * stored
         return Energies(
@@ -249,12 +237,11 @@ class FrameWithTendons(FrameTendonNumbers, LinkRows, OnRigidGround):
                 share = half * (left - right) / limit
             out[frame.LEFT_REACTION] = 0.5 * (1.0 + share) * out[frame.VERTICAL_REACTION]
             out[frame.RIGHT_REACTION] = 0.5 * (1.0 - share) * out[frame.VERTICAL_REACTION]
-        link = self.tendon_stretch(mode, state, 0.0)
+        stretch = self.tendon_stretch(mode, state, 0.0)
         for i in range(self.link_count):
-            row, own = self.row_of_link(i), self.link_variables(i, state)
-            law, link_state = self.law_of(row), self.link_state(mode, row)
+            _, law, link_state, own = self.link(i, mode, state)
             j = FRAME_COLUMNS + LINK_COLUMNS * i
-            out[j], out[j + 1] = law.force(link_state, link, own), link.elongation
+            out[j], out[j + 1] = law.force(link_state, stretch, own), stretch.elongation
             out[j + 2] = law.shown(link_state)
         return out
 
@@ -269,10 +256,9 @@ def frame_with_tendons(
         rows.append(link_row(along, tendon.law, value))
         value *= padded_state_count(tendon.law.states())
     rocking: Any = model.system
-    filled, count = np.concatenate(rows), len(links)
+    array, count = np.concatenate(rows), len(links)
     system: FrameWithTendons = with_workspace(
-        FrameWithTendons(rocking, half_width, float(columns), 0, links[0].law, count, filled),
-        filled,
+        FrameWithTendons(rocking, half_width, float(columns), 0, links[0].law, count, array)
     )
     stiffness = columns * sum(tendon.stiffness for tendon in links) * (2.0 * half_width) ** 2
     fastest = math.sqrt(model.fastest_frequency**2 + stiffness / rocking.right.inertia)
@@ -280,19 +266,17 @@ def frame_with_tendons(
     def initial(start: Start) -> tuple[int, Vector, Vector]:
         mode, state, memory = model.initial(start)
         state = np.concatenate([state, np.zeros(system.variables())])
-        link = system.tendon_stretch(mode, state, 0.0)
+        stretch = system.tendon_stretch(mode, state, 0.0)
         for i in range(count):
-            row = system.row_of_link(i)
-            start_state = system.law_of(row).starting(link, system.link_variables(i, state))
-            mode += int(row[PLACE_VALUE]) * start_state
+            row, law, _, own = system.link(i, mode, state)
+            mode += int(row[PLACE_VALUE]) * law.starting(stretch, own)
         return mode, state, np.append(memory, 0.0)
 
     mode, state, _ = initial(Start())
-    link = system.tendon_stretch(mode, state, 0.0)
+    stretch = system.tendon_stretch(mode, state, 0.0)
     for i in range(count):
-        row = system.row_of_link(i)
-        link_state, own = system.link_state(mode, row), system.link_variables(i, state)
-        row[REST_ENERGY] = system.law_of(row).energy(link_state, link, own)
+        row, law, link_state, own = system.link(i, mode, state)
+        row[REST_ENERGY] = law.energy(link_state, stretch, own)
     return replace(
         model,
         name="rocking frame with tendons",
@@ -301,11 +285,7 @@ def frame_with_tendons(
         guard_tolerance=np.concatenate([
             model.guard_tolerance, np.full(GUARDS * count, ROUNDING * 4.0 * half_width),
         ]),
-        columns=(
-            *model.columns,
-            *(Column(column_of(f"restrainer_{name}", i), per_mass=name == "force")
-              for i in range(count) for name in ("force", "elongation", "state")),
-        ),
+        columns=(*model.columns, *link_columns(count, count)),
         memory=(*model.memory, "link_of_event"),
         links=count,
         selects=True,

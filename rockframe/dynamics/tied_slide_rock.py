@@ -20,16 +20,18 @@ from rockframe.dynamics.chain.link_rows import (
     BODY_VERSINE,
     DISPLACEMENT_X,
     DISPLACEMENT_Y,
+    MOMENT_OF_LINKS,
     ChainLink,
-)
-from rockframe.dynamics.chain.linked import LinkMechanics, link_law_and_rows, with_workspace
-from rockframe.dynamics.chain.model import (
     link_columns,
+)
+from rockframe.dynamics.chain.linked import LinkMechanics, link_law_and_rows
+from rockframe.dynamics.chain.model import (
     link_force_rounding,
     link_guard_tolerance,
     link_scales,
     visible_links,
 )
+from rockframe.dynamics.chain.returned import with_workspace
 from rockframe.dynamics.chain.rows import BODY_STRIDE
 from rockframe.dynamics.protocol import ContactModel, Ground, Guards, Slope, Start
 from rockframe.dynamics.slide_motion import (
@@ -41,7 +43,6 @@ from rockframe.dynamics.slide_motion import (
     NORMAL_FORCE,
     RISE,
     ROTATION,
-    SLIDE_MEMORY,
     SLIP,
     Loads,
 )
@@ -51,8 +52,6 @@ from rockframe.dynamics.vibrations import greatest_eigenvalue
 
 BLOCK_COLUMNS: Final = len(COLUMNS)
 SLIP_COLUMNS: Final = ("slip", "slip_velocity")
-LINK_PLACE: Final = len(SLIDE_MEMORY)
-"""Index into the memory: the link of the last event, counted from 1; 0 for none."""
 
 
 class TiedNumbers(NamedTuple):
@@ -99,11 +98,6 @@ class TiedSlideRock(TiedNumbers, LinkMechanics, SlideRock):  # pyright: ignore[r
     def body_column_count(self) -> int:
         """Return the number of columns of the block."""
         return BLOCK_COLUMNS
-
-    @inlined
-    def link_event_index(self) -> int:
-        """Return the index in the memory of the last event's link."""
-        return LINK_PLACE
 
     @inlined
     def reset_event(self, memory: Vector) -> None:
@@ -205,12 +199,10 @@ def tied_slide_rock(block: SlideRock, ties: Sequence[ChainLink], *, mass: float)
     """Assemble the model of a block that slides and rocks with links, from its mass [kg]."""
     untied = slide_rock(block, mass=mass)
     law, rows = link_law_and_rows(ties, MODES, 1)
-    filled = np.concatenate([np.zeros(BODY_STRIDE), *rows])
-    system: TiedSlideRock = with_workspace(
-        TiedSlideRock(*block, 1, len(ties), 0.0, law, filled), filled
-    )
+    array = np.concatenate([np.zeros(BODY_STRIDE), *rows])
+    system: TiedSlideRock = with_workspace(TiedSlideRock(*block, 1, len(ties), 0.0, law, array))
     laws = [system.law_of(system.row_of_link(i)) for i in range(len(ties))]
-    system = system._replace(begins_idle=float(all(one.idles(0) for one in laws)))
+    system = system._replace(begins_idle=float(all(law.idles(0) for law in laws)))
     upright, at_rest, _ = untied.initial(Start())
     link_variables = np.zeros(system.variables())
     state_at_rest = np.append(at_rest, link_variables)
@@ -228,15 +220,15 @@ def tied_slide_rock(block: SlideRock, ties: Sequence[ChainLink], *, mass: float)
     visible, own = visible_links(ties), untied.columns
     if block.static == math.inf:  # no columns of slip where there cannot be any
         own = tuple(
-            replace(one, name=f"unused_{one.name}") if one.name in SLIP_COLUMNS else one
-            for one in own
+            replace(column, name=f"unused_{column.name}") if column.name in SLIP_COLUMNS else column
+            for column in own
         )
     return replace(
         untied,
         system=system,
         scales=np.append(untied.scales, link_scales(system, ties)),
         guard_tolerance=np.concatenate([block_tolerance, *map(link_guard_tolerance, ties)]),
-        columns=(*own, *link_columns(len(ties), visible)),
+        columns=(*own, *link_columns(len(ties), visible), MOMENT_OF_LINKS),
         memory=(*untied.memory, "link_of_event"),
         links=visible,
         selects=True,

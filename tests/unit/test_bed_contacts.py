@@ -5,6 +5,7 @@ import itertools
 import pytest
 
 from rockframe.dynamics.bed import DOWN, RAISED, Bed, both_contacts, end_contact
+from rockframe.dynamics.pads import LEAVING
 
 pytestmark = pytest.mark.unit
 
@@ -26,7 +27,7 @@ def test_bed_interprets_contact_numbers(left, right):
     assert BED.is_held(contact, False) == (right == DOWN)
     # the sign of the tilt is the side of the raised end
     assert BED.tilt(contact) == right - left
-    assert BED.waiting(contact, True) == BED.disturbed(contact) == contact
+    assert BED.with_end(contact, True, LEAVING) == BED.disturbed(contact) == contact
     assert BED.follows(contact, True) == both_contacts(RAISED, RAISED)
 
 

@@ -39,7 +39,7 @@ def cascade(
         Rotation of the first body at rest [rad].
     """
     ratio = first.mass / second.mass
-    lower_part, upper_part = (cast("SingleBody", one.system).part for one in (first, second))
+    lower_part, upper_part = (cast("SingleBody", stage.system).part for stage in (first, second))
     system = Cascade(upper_part, lower_part, ratio, top, cap_centre, offset)
     body_columns = len(BODY_COLUMNS)
     under = tuple(replace(column, mass_ratio=ratio) for column in first.columns[body_columns:])

@@ -10,8 +10,7 @@ from typing import Final, NamedTuple
 from rockframe.compiled import Vector, inlined, kernel
 from rockframe.dynamics.base import Guards
 from rockframe.dynamics.bodies import ROTATION, VERTICAL
-from rockframe.dynamics.body import BodyState
-from rockframe.dynamics.on_base import IDLE_GUARDS, BodyOnBase, Mode, Rates, VelocityChange
+from rockframe.dynamics.on_base import IDLE_GUARDS, BodyOnBase, Rates, VelocityChange
 from rockframe.dynamics.protocol import (
     HELD_PLACE,
     IMPACT_LOSS,
@@ -80,20 +79,21 @@ class Cascade(Stacked, Stages):
 
     @inlined
     def cap_top_motion(
-        self, mode: Mode, state: BodyState, angular: float, vertical: float, horizontal: float
+        self, mode: int, state: Vector, angular: float, vertical: float, horizontal: float
     ) -> PointMotion:
         """Return the motion of the middle of the cap's top, :eq:`eq-carried`.
 
         `angular`, `vertical` and `horizontal` are the accelerations of the lower body.
         """
-        attitude, rate = self.lower.body.attitude(state.rotation), state.angular_velocity
-        centre_velocity = self.lower.horizontal_velocity(mode, state, attitude)
+        body = self.state_of(LOWER, state)
+        attitude, rate = self.lower.body.attitude(body.rotation), body.angular_velocity
+        centre_velocity = self.lower.horizontal_velocity(self.modes_in(mode).lower, body, attitude)
         exact_sine = 0.0 if self.lower.body.small else attitude.sine
         sine, cosine = attitude.sine, attitude.cosine
         exact_cosine = 0.0 if self.lower.body.small else cosine
         return PointMotion(
             centre_velocity + self.top * cosine * rate + self.offset * exact_sine * rate,
-            state.vertical_velocity - self.top * sine * rate + self.offset * cosine * rate,
+            body.vertical_velocity - self.top * sine * rate + self.offset * cosine * rate,
             horizontal
             + self.top * (cosine * angular - exact_sine * rate * rate)
             + self.offset * (exact_sine * angular + exact_cosine * rate * rate),
@@ -111,16 +111,8 @@ class Cascade(Stacked, Stages):
     @inlined
     def ground_of_upper(self, mode: int, state: Vector, below: Rates, ground: Ground) -> Ground:
         """Return the absolute acceleration of the cap's top, the ground of the upper body."""
-        top = self.top_motion(mode, state, below)
+        top = self.cap_top_motion(mode, state, below.rotation, below.vertical, below.horizontal)
         return Ground(ground.x + top.acceleration_x, ground.y + top.acceleration_y)
-
-    @inlined
-    def top_motion(self, mode: int, state: Vector, below: Rates) -> PointMotion:
-        """Return the motion of the middle of the cap's top from the rates of the lower body."""
-        return self.cap_top_motion(
-            self.modes_in(mode).lower, self.state_of(LOWER, state), below.rotation, below.vertical,
-            below.horizontal,
-        )  # fmt: skip
 
     @inlined
     def accelerate(self, mode: int, state: Vector, ground: Ground) -> tuple[float, ...]:
@@ -184,16 +176,12 @@ class Cascade(Stacked, Stages):
     ) -> int:
         """Carry out a switch of the lower body, and apply its velocity jump to the upper one."""
         lost, struck = memory[REPINNING_LOSS], memory[IMPACT_LOSS]
-        before = self.cap_top_motion(
-            self.modes_in(mode).lower, self.state_of(LOWER, state), 0.0, 0.0, 0.0
-        )
+        before = self.cap_top_motion(mode, state, 0.0, 0.0, 0.0)
         new = switch_mode(self, self.lower, LOWER, which, mode, state, ground, memory)
         memory[REPINNING_LOSS] = lost + self.mass_ratio * (memory[REPINNING_LOSS] - lost)
         memory[IMPACT_LOSS] = struck + self.mass_ratio * (memory[IMPACT_LOSS] - struck)
         name_soil_event(memory)
-        after = self.cap_top_motion(
-            self.modes_in(new).lower, self.state_of(LOWER, state), 0.0, 0.0, 0.0
-        )
+        after = self.cap_top_motion(new, state, 0.0, 0.0, 0.0)
         self.apply_velocity_jump(
             new, after.velocity_x - before.velocity_x, after.velocity_y - before.velocity_y, state,
             memory,
@@ -246,7 +234,7 @@ class Cascade(Stacked, Stages):
         modes, states = self.modes_in(mode), self.states_in(state)
         upper, lower = states
         rates = self.lower_rates(mode, state, ground)
-        top = self.top_motion(mode, state, rates)
+        top = self.cap_top_motion(mode, state, rates.rotation, rates.vertical, rates.horizontal)
         on_top = Ground(ground.x + top.acceleration_x, ground.y + top.acceleration_y)
         above = self.upper.rates_in(modes.upper, upper, self.upper_own(state), on_top)
         on_cap = self.upper.body.attitude(upper.rotation)
@@ -290,13 +278,10 @@ class Cascade(Stacked, Stages):
 
         It follows from the rotation about the held point, or is a coordinate where none is held.
         """
-        modes, body = self.modes_in(mode), self.state_of(k, state)
+        modes, body, held_at = self.modes_in(mode), self.state_of(k, state), memory[HELD_PLACE + k]
         if k == UPPER:
-            attitude = self.upper.body.attitude(body.rotation)
-            return self.upper.horizontal_position(modes.upper, body, attitude, memory[HELD_PLACE])
-        attitude = self.lower.body.attitude(body.rotation)
-        held_at = memory[HELD_PLACE + LOWER]
-        return self.lower.horizontal_position(modes.lower, body, attitude, held_at)
+            return self.upper.horizontal_position(modes.upper, body, held_at)
+        return self.lower.horizontal_position(modes.lower, body, held_at)
 
     @kernel
     def response(

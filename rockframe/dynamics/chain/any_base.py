@@ -2,7 +2,7 @@
 
 from typing import Final, NamedTuple
 
-from rockframe.compiled import inlined, kernel
+from rockframe.compiled import Vector, inlined, kernel
 from rockframe.dynamics.base import Base, BaseForce, EndEvent, Guards, Variables
 from rockframe.dynamics.bed import Bed
 from rockframe.dynamics.body import BaseLine
@@ -20,16 +20,7 @@ class LawNumbers(NamedTuple):
     """Which law a base has, and its numbers."""
 
     which: int
-    n0: float
-    n1: float
-    n2: float
-    n3: float
-    n4: float
-    n5: float
-    n6: float
-    n7: float
-    n8: float
-    n9: float
+    numbers: Vector
 
 
 class AnyBase(Base, LawNumbers):
@@ -40,15 +31,15 @@ class AnyBase(Base, LawNumbers):
     @inlined
     def pads(self) -> ElasticPads:
         """Return the pads."""
-        return ElasticPads(
-            Viscoelastic(self.n0, self.n1), self.n2, self.n3, self.n4, self.n5, self.n6, self.n7,
-            self.n8, self.n9,
-        )  # fmt: skip
+        n = self.numbers
+        law = Viscoelastic(n[0], n[1])
+        return ElasticPads(law, n[2], n[3], n[4], n[5], n[6], n[7], n[8], n[9])
 
     @inlined
     def bed(self) -> Bed:
         """Return the bed."""
-        return Bed(self.n0, self.n1, self.n2, self.n3, self.n4 != 0.0)
+        n = self.numbers
+        return Bed(n[0], n[1], n[2], n[3], n[4] != 0.0)
 
     @kernel
     def end_guards(self) -> int:
@@ -172,25 +163,11 @@ class AnyBase(Base, LawNumbers):
         return self.bed().will_press(left, line, own)
 
     @kernel
-    def held(self, contact: int, left: bool) -> int:
-        """Return the contact with an end that lifted off but touches again, pressed by the base."""
+    def with_end(self, contact: int, left: bool, end: int) -> int:
+        """Return the contact with another contact of an end, where the base tells these apart."""
         if self.which == ON_PADS:
-            return self.pads().held(contact, left)
-        return self.bed().held(contact, left)
-
-    @kernel
-    def waiting(self, contact: int, left: bool) -> int:
-        """Return the contact with an end that has lifted off while the base still presses it."""
-        if self.which == ON_PADS:
-            return self.pads().waiting(contact, left)
-        return self.bed().waiting(contact, left)
-
-    @kernel
-    def unpressed(self, contact: int, left: bool) -> int:
-        """Return the contact with an end that stays held though the base no longer presses it."""
-        if self.which == ON_PADS:
-            return self.pads().unpressed(contact, left)
-        return self.bed().unpressed(contact, left)
+            return self.pads().with_end(contact, left, end)
+        return self.bed().with_end(contact, left, end)
 
     @kernel
     def engaged(self, contact: int, left: bool, line: BaseLine, own: Variables) -> int:

@@ -16,7 +16,7 @@ from rockframe.dynamics.body import PIVOT_CENTRE, PIVOT_LEFT, PIVOT_RIGHT, Attit
 from rockframe.dynamics.chain import rows as at
 from rockframe.dynamics.chain.any_base import ON_RIGID
 from rockframe.dynamics.chain.impact import BOTH, LEFT_ONLY, RIGHT_ONLY, Trial, solve_trial
-from rockframe.dynamics.chain.motion import add_constraint, normal_coriolis
+from rockframe.dynamics.chain.motion import FREE, add_constraint, normal_coriolis
 from rockframe.dynamics.chain.rows import BODY_STRIDE, CONSTRAINT_STRIDE
 from rockframe.dynamics.chain.system import Chain
 from rockframe.dynamics.on_base import Mode
@@ -229,16 +229,22 @@ class RigidCorners(Chain):
         """Find impulses by which bodies stand on a set of corners, each held against sliding."""
         solve_trial(self, mode, corners, corners, False, True, 0.0, state)
 
-    @inlined
+    @kernel
     def complete_solution(self, work: Vector, out: Vector) -> None:
-        """Set the accelerations of bodies in full contact with a rigid base to exactly zero."""
+        """Write the friction of slipping bodies; set accelerations to zero in full contact."""
         for k in range(self.body_count):
             i = k * BODY_STRIDE
             left, right = work[i + at.LEFT_CONSTRAINT], work[i + at.RIGHT_CONSTRAINT]
-            if self.is_rigid(k) and left != NO_CONSTRAINT and right != NO_CONSTRAINT:
+            if not self.is_rigid(k) or (left == NO_CONSTRAINT and right == NO_CONSTRAINT):
+                continue
+            if work[i + at.HOLD_STATE] == FREE:
+                press = self.corner_force(k, True) + self.corner_force(k, False)
+                work[i + at.TANGENTIAL_FORCE] = work[i + at.FRICTION_RATIO] * press
+            if left != NO_CONSTRAINT and right != NO_CONSTRAINT:
                 first = BEFORE_HORIZONTAL * k
                 out[first + ROTATION] = out[first + VERTICAL] = 0.0
-                out[self.horizontal_of(k)] = 0.0
+                if work[i + at.HOLD_STATE] != FREE:
+                    out[self.horizontal_of(k)] = 0.0
 
     @kernel
     def corner_force(self, k: int, left: bool) -> float:
@@ -273,21 +279,20 @@ class RigidCorners(Chain):
         return moving
 
     @inlined
-    def base_columns(self, k: int, body_mode: Mode, body: BodyState) -> Variables:
+    def base_columns(self, k: int, mode: int, body: BodyState) -> Variables:
         """Return the base's columns in the results: of a rigid one, the forces of its corners."""
         if self.is_rigid(k):
             return self.corner_force(k, True), self.corner_force(k, False), 0.0
-        return self.deformable_base_columns(k, body_mode, body)
+        return self.deformable_base_columns(k, mode, body)
 
     @inlined
     def position_from_pin(
         self, k: int, body_mode: Mode, held: float, state: Vector
     ) -> tuple[float, float]:
         """Return place of a body along its base, and its rate, from the place of its held point."""
-        part, body = self.on_base(k), self.constrained_state(k, body_mode, state)
-        pin, attitude = part.body.pin(body_mode.pivot), part.body.attitude(body.rotation)
-        reach = part.body.reach(pin, attitude)
-        place = held + part.body.about_pin(pin, attitude)
+        law, body = self.on_base(k).body, self.constrained_state(k, body_mode, state)
+        reach = law.reach_about(body_mode.pivot, body.rotation)
+        place = held + law.from_pivot(body_mode.pivot, body.rotation)
         return place, reach.derivative * body.angular_velocity
 
     @kernel
@@ -354,9 +359,9 @@ class RigidCorners(Chain):
         for k in range(self.body_count):
             part, body_mode = self.on_base(k), self.body_mode(mode, k)
             if self.is_rigid(k) and not part.is_free(body_mode):
-                pin, place = part.body.pin(body_mode.pivot), state[self.horizontal_of(k)]
-                attitude = part.body.attitude(self.constrained_state(k, body_mode, state).rotation)
-                memory[HELD_PLACE + k] = place - part.body.about_pin(pin, attitude)
+                rotation = self.constrained_state(k, body_mode, state).rotation
+                away = part.body.from_pivot(body_mode.pivot, rotation)
+                memory[HELD_PLACE + k] = state[self.horizontal_of(k)] - away
         self.project_onto_contacts(mode, state, memory)
         self.store_held_place(mode, state, memory)
 

@@ -110,12 +110,6 @@ def next_subset(start: int, near: NearbySubsets) -> int:
 
 
 @inlined
-def trial_code(bears: int, held: int, sense: float, impulsive: bool) -> float:
-    """Return the code of a body's constraints in a trial, by which equal trials are recognized."""
-    return bears + 4.0 * held + 16.0 * (sense + 1.0) + (64.0 if impulsive else 0.0)
-
-
-@inlined
 def add_rigid_base_constraints(
     system: Any, k: int, count: int, bears: int, held: int, sense: float, impulsive: bool,
     work: Vector, rows: Vector,
@@ -161,7 +155,9 @@ def solve_trial(
         bears, touches = subset >> 2 * k & BOTH, closed >> 2 * k & BOTH
         held = touches | bears if sticks else bears
         sense = 0.0 if sticks else system.trial_sense(k)
-        tried = trial_code(bears, held, sense, impulsive) if system.is_rigid(k) else NOT_ELIMINATED
+        tried = NOT_ELIMINATED  # or a code by which equal trials of a body are recognized
+        if system.is_rigid(k):
+            tried = bears + 4.0 * held + 16.0 * (sense + 1.0) + (64.0 if impulsive else 0.0)
         if same and tried == work[i + at.TRIAL_CODE] and tried != NOT_ELIMINATED:
             count = start = int(work[i + at.CONSTRAINT_COUNT])
             continue

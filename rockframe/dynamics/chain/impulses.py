@@ -13,7 +13,6 @@ from rockframe.compiled import Vector, inlined, kernel
 from rockframe.dynamics.chain import rows as at
 from rockframe.dynamics.chain.corner_guards import CornerGuards
 from rockframe.dynamics.chain.impact import (
-    BOTH,
     LEFT_ONLY,
     NOISE,
     RIGHT_ONLY,
@@ -129,17 +128,6 @@ class RigidImpulses(CornerGuards):
         work[i + at.LANDING_MOMENT] += moment
         work[i + at.LANDING_TANGENTIAL] += along
 
-    @inlined
-    def landed_ends(self, k: int, left: bool, mode: int, new: int) -> int:
-        """Return the set of ends that have landed on a deformable base in an event.
-
-        Both ends of a body that flew may have landed together.
-        """
-        part = self.on_base(k)
-        both = part.flies(self.body_mode(mode, k).contact)
-        both &= part.base.is_held(self.body_mode(new, k).contact, not left)
-        return BOTH if both else LEFT_ONLY if left else RIGHT_ONLY
-
     @kernel
     def undo_impulses(self, k: int, scales: LandingScales, mode: int, state: Vector) -> None:
         """Undo the impulses of rigid bases, and scale the landing impulse on a body."""
@@ -246,9 +234,8 @@ class RigidImpulses(CornerGuards):
     @kernel
     def slip_along_friction(self, k: int, mode: int, state: Vector) -> float:
         """Return the velocity of slip, positive in the sense of the friction of the landing."""
-        part, body = self.on_base(k), self.state_of(k, state)
-        pin = part.body.pin(self.body_mode(mode, k).pivot)
-        reach = part.body.reach(pin, part.body.attitude(body.rotation))
+        body = self.state_of(k, state)
+        reach = self.on_base(k).body.reach_about(self.body_mode(mode, k).pivot, body.rotation)
         about, sway = reach.derivative * body.angular_velocity, body.horizontal_velocity
         slip, along = sway - about, self.workspace()[k * BODY_STRIDE + at.LANDING_TANGENTIAL]
         if along == 0.0 or abs(slip) <= SLIP_TOLERANCE * (abs(sway) + abs(about)):

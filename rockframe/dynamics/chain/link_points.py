@@ -134,6 +134,12 @@ class LinkPoints(LinkRows):
         return LinkMotion(Stretch(elongation, rate, 0.0, initial_length, row[NOISE]), x, y)
 
     @inlined
+    def stretch_now(self, row: Vector, work: Vector) -> Stretch:
+        """Return elongation and rate of a link."""
+        first, second = self.end_points(row, work)
+        return self.link_kinematics(row, first, second).stretch
+
+    @inlined
     def point_acceleration(
         self, k: int, point: DisplacedPoint, work: Vector
     ) -> tuple[float, float]:

@@ -4,14 +4,16 @@ One machine code serves all links of a law, whatever their number.
 """
 
 import math
+from collections.abc import Iterator
 from typing import TYPE_CHECKING, Any, Final, NamedTuple
 
 import numpy as np
 
 from rockframe.compiled import Vector, inlined, kernel, numbers_in, view_from, view_of
+from rockframe.dynamics.chain.returned import ReturnedArrays
 from rockframe.dynamics.links import GUARDS, LinkNumbers
 from rockframe.dynamics.pads import ROUNDING
-from rockframe.dynamics.protocol import POWERS, Energies, Ground, Guards, Slope
+from rockframe.dynamics.protocol import Column, Energies, Ground, Guards, Slope, column_of
 
 GROUND: Final = -1
 """In place of the number of a body."""
@@ -70,6 +72,15 @@ class ChainLink(NamedTuple):
         return length + math.hypot(*self.on_point) + math.hypot(*self.to_point)
 
 
+class Link(NamedTuple):
+    """A link in a mode and state of the system."""
+
+    row: Vector
+    law: Any
+    state: int  # of its law
+    own: Vector  # its variables
+
+
 class LinkedChainNumbers(NamedTuple):
     """The numbers of a chain with links."""
 
@@ -79,18 +90,13 @@ class LinkedChainNumbers(NamedTuple):
     rows: Vector  # the array of the chain, then the rows of the links and their workspace
 
 
-class Linkable:
+class Linkable(ReturnedArrays):
     """What links need of the system of the bodies, which implements all of it. A mixin."""
 
     __slots__ = ()
     body_count: int
-    rows: Vector
 
     if TYPE_CHECKING:
-
-        def coordinates(self) -> int:
-            """Return the number of coordinates."""
-            raise NotImplementedError
 
         def moving_in(self, mode: int) -> int:
             """Return the number of coordinates that move in a mode."""
@@ -138,10 +144,6 @@ class Linkable:
 
         def reset_event(self, memory: Vector) -> None:
             """Reset the memory of the last event."""
-            raise NotImplementedError
-
-        def link_event_index(self) -> int:
-            """Return the index in the memory of the last event's link."""
             raise NotImplementedError
 
         def energies_of_bodies(self, mode: int, state: Vector) -> Energies:
@@ -196,40 +198,27 @@ class LinkRows(Linkable):
         return view_of(state, 2 * self.coordinates() + i * count, count)
 
     @inlined
+    def link(self, i: int, mode: int, state: Vector) -> Link:
+        """Return a link as it is in a mode and state."""
+        row = self.row_of_link(i)
+        return Link(
+            row, self.law_of(row), self.link_state(mode, row), self.link_variables(i, state)
+        )
+
+    @inlined
     def poses(self) -> Vector:
         """Return displacements and rotations of bodies, and the forces of links on them."""
         return view_of(self.rows, self.links_end(), POSE_STRIDE * self.body_count)
 
     @inlined
-    def slopes(self) -> Vector:
-        """Return the workspace for accelerations, rates of the links' variables, and powers."""
-        first = self.links_end() + POSE_STRIDE * self.body_count
-        return view_of(self.rows, first, self.coordinates() + self.variables() + POWERS)
-
-    @inlined
-    def slopes_end(self) -> int:
-        """Return the index behind the workspace for slopes."""
-        lies = POSE_STRIDE * self.body_count + self.coordinates()
-        return self.links_end() + lies + self.variables() + POWERS
-
-    @inlined
-    def guard_workspace(self, which: int) -> Vector:
-        """Return the workspace for guards (0) or their rates (1)."""
-        return view_of(self.rows, self.slopes_end() + which * self.guards(), self.guards())
+    def returned_start(self) -> int:
+        """Return the index of the workspace for what the equations return."""
+        return self.links_end() + POSE_STRIDE * self.body_count
 
     @inlined
     def columns(self) -> int:
         """Return the number of columns."""
         return self.body_column_count() + LINK_COLUMNS * self.link_count + 1
-
-    @inlined
-    def column_workspace(self) -> Vector:
-        """Return the workspace for columns."""
-        return view_of(self.rows, self.slopes_end() + 2 * self.guards(), self.columns())
-
-    def array_length(self) -> int:
-        """Return the index behind the whole array, that is its length."""
-        return self.slopes_end() + 2 * self.guards() + self.columns()
 
     @kernel
     def variables(self) -> int:
@@ -261,6 +250,19 @@ def link_row(link: ChainLink, law: Any, value: int) -> Vector:
         *link.along,
     )  # fmt: skip
     return np.array([*geometry, *numbers_in(law)], dtype=np.float64)
+
+
+def link_columns(links: int, shown: int) -> Iterator[Column]:
+    """Return the columns of links; users do not see those of loads, which come last."""
+    for i in range(links):
+        kind = "restrainer" if i < shown else "unused_load"
+        yield Column(column_of(f"{kind}_force", i), per_mass=True)
+        yield Column(column_of(f"{kind}_elongation", i))
+        yield Column(column_of(f"{kind}_state", i))
+
+
+MOMENT_OF_LINKS: Final = Column(LINK_MOMENT, per_mass=True)
+"""The column behind those of the links of bodies."""
 
 
 def padded_state_count(states: int) -> int:

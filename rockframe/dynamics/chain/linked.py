@@ -6,8 +6,6 @@ Links load the bodies, :eq:`eq-link-loads`; the equations of the bodies are othe
 from collections.abc import Sequence
 from typing import Any
 
-import numpy as np
-
 from rockframe.compiled import Vector, inlined, kernel, numbers_in, view_of
 from rockframe.dynamics.chain import rows as at
 from rockframe.dynamics.chain.link_points import DisplacedPoint, LinkPoints
@@ -56,8 +54,7 @@ class LinkMechanics(LinkPoints):
         for k in range(self.body_count):
             poses[k * POSE_STRIDE + LINK_FORCE_X] = poses[k * POSE_STRIDE + LINK_FORCE_Y] = 0.0
         for i in range(self.link_count):
-            row, own = self.row_of_link(i), self.link_variables(i, state)
-            law, link_state = self.law_of(row), self.link_state(mode, row)
+            row, law, link_state, own = self.link(i, mode, state)
             count = law.variables()
             rates = view_of(out, self.coordinates() + i * count, count)
             if law.idles(link_state):
@@ -91,14 +88,10 @@ class LinkMechanics(LinkPoints):
             poses[j + LINK_FORCE_Y] += y
 
     @inlined
-    def link_force_x(self, k: int) -> float:
-        """Return the last resultant of links on a body, to the right, over the reference mass."""
-        return float(self.poses()[k * POSE_STRIDE + LINK_FORCE_X])
-
-    @inlined
-    def link_force_y(self, k: int) -> float:
-        """Return the last resultant of links on a body, upwards, over the reference mass."""
-        return float(self.poses()[k * POSE_STRIDE + LINK_FORCE_Y])
+    def resultant_of_links(self, k: int) -> tuple[float, float]:
+        """Return the last resultant of links on a body, to the right and up, per reference mass."""
+        poses, j = self.poses(), k * POSE_STRIDE
+        return poses[j + LINK_FORCE_X], poses[j + LINK_FORCE_Y]
 
     @kernel
     def guards_in(self, mode: int, state: Vector, slope: Slope, ground: Ground) -> Guards:
@@ -114,8 +107,7 @@ class LinkMechanics(LinkPoints):
         else:
             self.forces_from_slope(mode, state, slope, ground)
         for i in range(self.link_count):
-            row, own = self.row_of_link(i), self.link_variables(i, state)
-            law, link_state = self.law_of(row), self.link_state(mode, row)
+            row, law, link_state, own = self.link(i, mode, state)
             link, first = self.link_stretch(row, work, idle), self.body_guard_count() + GUARDS * i
             for which in range(GUARDS):
                 value, change = law.guard(which, link_state, link, own)
@@ -137,26 +129,21 @@ class LinkMechanics(LinkPoints):
         self, mode: int, guard: int, state: Vector, ground: Ground, memory: Vector
     ) -> int:
         """Carry out the switch of a body or of a link; return the new mode."""
-        place, body_guards = self.link_event_index(), self.body_guard_count()
+        link_of_event, body_guards = len(memory) - 1, self.body_guard_count()
         if guard < body_guards:
-            memory[place] = 0.0
+            memory[link_of_event] = 0.0
             return self.switch_body(mode, guard, state, ground, memory)
         self.reset_event(memory)
         i = (guard - body_guards) // GUARDS
-        row, own, work = self.row_of_link(i), self.link_variables(i, state), self.workspace()
+        row, law, link_state, own = self.link(i, mode, state)
+        work = self.workspace()
         self.write_kinematics_and_poses(mode, state, work)
-        first, second = self.end_points(row, work)
-        link_state, value = self.link_state(mode, row), int(row[PLACE_VALUE])
-        event = self.law_of(row).switch(
-            guard - body_guards - GUARDS * i,
-            link_state,
-            self.link_kinematics(row, first, second).stretch,
-            own,
-        )
+        which = guard - body_guards - GUARDS * i
+        event = law.switch(which, link_state, self.stretch_now(row, work), own)
         memory[LAST_EVENT] = event.event
         memory[LINK_LOSS] += event.lost
-        memory[place] = i + 1.0
-        return mode + value * (event.state - link_state)
+        memory[link_of_event] = i + 1.0
+        return mode + int(row[PLACE_VALUE]) * (event.state - link_state)
 
     @kernel
     def energies(self, mode: int, state: Vector) -> Energies:
@@ -165,11 +152,8 @@ class LinkMechanics(LinkPoints):
         self.write_poses(mode, state, work)
         gravity, elastic, change = energies.gravity, energies.elastic, energies.from_rest
         for i in range(self.link_count):
-            row, own = self.row_of_link(i), self.link_variables(i, state)
-            first, second = self.end_points(row, work)
-            stored = self.law_of(row).energy(
-                self.link_state(mode, row), self.link_kinematics(row, first, second).stretch, own
-            )
+            row, law, link_state, own = self.link(i, mode, state)
+            stored = law.energy(link_state, self.stretch_now(row, work), own)
             # loads and walls have a fixed direction; a load has one state, a wall two
             if (row[DIRECTION_X] != 0.0 or row[DIRECTION_Y] != 0.0) and row[STATE_COUNT] <= 1.0:
                 gravity += stored
@@ -186,8 +170,7 @@ class LinkMechanics(LinkPoints):
         out, work = self.observe_bodies(mode, state, slope, ground, memory), self.workspace()
         moment = 0.0
         for i in range(self.link_count):
-            row, own = self.row_of_link(i), self.link_variables(i, state)
-            law, link_state = self.law_of(row), self.link_state(mode, row)
+            row, law, link_state, own = self.link(i, mode, state)
             first, second = self.end_points(row, work)
             link = self.link_kinematics(row, first, second)
             j = self.body_column_count() + LINK_COLUMNS * i
@@ -206,10 +189,8 @@ class LinkMechanics(LinkPoints):
         work = self.workspace()
         self.write_kinematics_and_poses(mode, state, work)
         for i in range(self.link_count):
-            row, own = self.row_of_link(i), self.link_variables(i, state)
-            stretched = self.link_kinematics(row, *self.end_points(row, work)).stretch
-            law = self.law_of(row)
-            row[REST_ENERGY] = law.energy(self.link_state(mode, row), stretched, own)
+            row, law, link_state, own = self.link(i, mode, state)
+            row[REST_ENERGY] = law.energy(link_state, self.stretch_now(row, work), own)
 
     @kernel
     def start_links(self, mode: int, state: Vector) -> int:
@@ -217,12 +198,9 @@ class LinkMechanics(LinkPoints):
         work = self.workspace()
         self.write_kinematics_and_poses(mode, state, work)
         for i in range(self.link_count):
-            row, own = self.row_of_link(i), self.link_variables(i, state)
-            first, second = self.end_points(row, work)
-            link_state = self.law_of(row).starting(
-                self.link_kinematics(row, first, second).stretch, own
-            )
-            mode += int(row[PLACE_VALUE]) * (link_state - self.link_state(mode, row))
+            row, law, was, own = self.link(i, mode, state)
+            starts = law.starting(self.stretch_now(row, work), own)
+            mode += int(row[PLACE_VALUE]) * (starts - was)
         return mode
 
 
@@ -244,10 +222,3 @@ def link_law_and_rows(
         msg = f"{len(links)} links are more than {bodies} bodies can have"
         raise AssemblyError([msg])
     return own[0].with_numbers(numbers_in(own[0]).tolist()), rows
-
-
-def with_workspace(system: Any, filled: Vector) -> Any:
-    """Return a system with its workspace, added as zeros behind the filled part of its array."""
-    return system._replace(
-        rows=np.concatenate([filled, np.zeros(system.array_length() - len(filled))])
-    )

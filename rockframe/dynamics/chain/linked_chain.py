@@ -4,7 +4,7 @@ The kinds are: deformable bases without slip, rigid ones among them, and either 
 """
 
 from collections.abc import Sequence
-from typing import Any
+from typing import Any, Final
 
 import numpy as np
 
@@ -23,12 +23,12 @@ from rockframe.dynamics.chain.link_rows import (
     ChainLink,
     LinkedChainNumbers,
 )
-from rockframe.dynamics.chain.linked import LinkMechanics, link_law_and_rows, with_workspace
+from rockframe.dynamics.chain.linked import LinkMechanics, link_law_and_rows
 from rockframe.dynamics.chain.motion import write_kinematics
+from rockframe.dynamics.chain.returned import with_workspace
 from rockframe.dynamics.chain.rigid import RigidChain
 from rockframe.dynamics.chain.rigid_friction import SlippingRigidChain
-from rockframe.dynamics.chain.rows import BODY_STRIDE, COLUMNS, GUARDS
-from rockframe.dynamics.chain.slips import SLIP_COLUMNS, SlippingBodies
+from rockframe.dynamics.chain.rows import BODY_STRIDE
 from rockframe.dynamics.chain.system import Chain
 from rockframe.dynamics.protocol import HELD_PLACE, Ground
 from rockframe.dynamics.trigonometry import sine_cosine, versine
@@ -42,21 +42,6 @@ class LinkedBodies(LinkMechanics, Chain):
     """
 
     __slots__ = ()
-
-    @inlined
-    def bodies_end(self) -> int:
-        """Return the index behind rows and workspace of the bodies."""
-        return self.chain_end()
-
-    @inlined
-    def body_guard_count(self) -> int:
-        """Return the number of guards of all bodies."""
-        return GUARDS * self.body_count
-
-    @inlined
-    def body_column_count(self) -> int:
-        """Return the number of columns of all bodies and their bases."""
-        return COLUMNS * self.body_count
 
     @kernel
     def moving_in(self, mode: int) -> int:
@@ -106,8 +91,8 @@ class LinkedChain(LinkedChainNumbers, LinkedBodies):  # pyright: ignore[reportGe
     __slots__ = ()
 
 
-class LinkedBodiesOnGround(LinkedBodies):
-    """Linked bodies, of which the lowest may stand on rigid ground. A mixin of systems.
+class LinkedRigidChain(LinkedChainNumbers, LinkedBodies, RigidChain):  # pyright: ignore[reportGeneralTypeIssues]
+    """Stacked bodies, some of them on rigid bases, with links: a system.
 
     Forces of links are finite, so that links take no part in impacts. While rigid ground holds the
     lowest body, its horizontal coordinate is the place of the held point, and does not change.
@@ -132,10 +117,7 @@ class LinkedBodiesOnGround(LinkedBodies):
         if not self.lowest_is_held(mode):
             return body.horizontal
         k = self.body_count - 1
-        part = self.on_base(k)
-        pin = part.body.pin(self.body_mode(mode, k).pivot)
-        attitude = part.body.attitude(body.rotation)
-        return float(body.horizontal + part.body.about_pin(pin, attitude))
+        return self.position_from_pin(k, self.body_mode(mode, k), body.horizontal, state)[0]
 
     @kernel
     def store_held_place(self, mode: int, state: Vector, memory: Vector) -> None:
@@ -161,29 +143,7 @@ class LinkedBodiesOnGround(LinkedBodies):
         return mode
 
 
-class LinkedRigidChain(LinkedChainNumbers, LinkedBodiesOnGround, RigidChain):  # pyright: ignore[reportGeneralTypeIssues]
-    """Stacked bodies, some of them on rigid bases, with links: a system."""
-
-    __slots__ = ()
-
-
-class LinkedSlippingBodies(LinkedBodies, SlippingBodies):
-    """Layout of the array of bodies with friction and links. A mixin of systems."""
-
-    __slots__ = ()
-
-    @inlined
-    def bodies_end(self) -> int:
-        """Return the index behind rows, workspace and friction of the bodies."""
-        return self.friction_end()
-
-    @inlined
-    def body_column_count(self) -> int:
-        """Return the number of columns of all bodies, their bases and slips."""
-        return (COLUMNS + SLIP_COLUMNS) * self.body_count
-
-
-class LinkedSlippingChain(LinkedChainNumbers, LinkedSlippingBodies, SlippingChain):  # pyright: ignore[reportGeneralTypeIssues]
+class LinkedSlippingChain(LinkedChainNumbers, LinkedBodies, SlippingChain):  # pyright: ignore[reportGeneralTypeIssues]
     """Bodies that friction holds on deformable bases, with links: a system.
 
     The forces of links enter the force that friction must hold.
@@ -192,9 +152,7 @@ class LinkedSlippingChain(LinkedChainNumbers, LinkedSlippingBodies, SlippingChai
     __slots__ = ()
 
 
-class LinkedSlippingRigidChain(  # pyright: ignore[reportGeneralTypeIssues]
-    LinkedChainNumbers, LinkedSlippingBodies, LinkedBodiesOnGround, SlippingRigidChain
-):
+class LinkedSlippingRigidChain(LinkedRigidChain, SlippingRigidChain):  # pyright: ignore[reportGeneralTypeIssues]
     """Bodies that friction holds, some of them on rigid bases, with links: a system."""
 
     __slots__ = ()
@@ -210,16 +168,18 @@ class LinkedSlippingRigidChain(  # pyright: ignore[reportGeneralTypeIssues]
         return new
 
 
+_LINKED: Final[dict[type[Chain], Any]] = {
+    Chain: LinkedChain,
+    RigidChain: LinkedRigidChain,
+    SlippingChain: LinkedSlippingChain,
+    SlippingRigidChain: LinkedSlippingRigidChain,
+}
+"""The system of each kind of chain with links."""
+
+
 def with_links(chain: Chain, links: Sequence[ChainLink]) -> LinkedBodies:
     """Return the system of a chain with links."""
     law, rows = link_law_and_rows(links, chain.modes(), chain.body_count)
-    if isinstance(chain, SlippingRigidChain):
-        kind: Any = LinkedSlippingRigidChain
-    elif isinstance(chain, RigidChain):
-        kind = LinkedRigidChain
-    elif isinstance(chain, SlippingChain):
-        kind = LinkedSlippingChain
-    else:
-        kind = LinkedChain
-    filled = np.concatenate([chain.rows, *rows])
-    return with_workspace(kind(chain.body_count, len(links), law, filled), filled)
+    bodies = chain.rows[: chain.bodies_end()]
+    kind = _LINKED[type(chain)]
+    return with_workspace(kind(chain.body_count, len(links), law, np.concatenate([bodies, *rows])))

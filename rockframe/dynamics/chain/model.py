@@ -1,7 +1,7 @@
 """Assembly of the model of a chain of bodies: sizes, bounds of its frequencies, initial state."""
 
 import math
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Sequence
 from typing import Final, NamedTuple
 
 import numpy as np
@@ -13,13 +13,14 @@ from rockframe.dynamics.bodies import BEFORE_HORIZONTAL, BODY_DOF, ROTATION, VER
 from rockframe.dynamics.body import BodyState
 from rockframe.dynamics.chain import rows as at
 from rockframe.dynamics.chain.friction import SlippingChain
-from rockframe.dynamics.chain.link_rows import LINK_MOMENT, ChainLink
+from rockframe.dynamics.chain.link_rows import MOMENT_OF_LINKS, ChainLink, link_columns
 from rockframe.dynamics.chain.linked import LinkMechanics
-from rockframe.dynamics.chain.linked_chain import LinkedBodies, LinkedBodiesOnGround, with_links
+from rockframe.dynamics.chain.linked_chain import LinkedBodies, LinkedRigidChain, with_links
+from rockframe.dynamics.chain.returned import with_workspace
 from rockframe.dynamics.chain.rigid import SET_MEMORY, RigidChain
 from rockframe.dynamics.chain.rigid_friction import SlippingRigidChain
 from rockframe.dynamics.chain.rows import BASE_COLUMNS, GUARDS, body_row, chain_numbers
-from rockframe.dynamics.chain.slips import SlippingBodies, friction_numbers
+from rockframe.dynamics.chain.slips import OFFSET, SlippingBodies
 from rockframe.dynamics.chain.system import Chain
 from rockframe.dynamics.links import GUARDS as GUARDS_OF_LINK
 from rockframe.dynamics.links import SteadyForce
@@ -61,7 +62,7 @@ def bare_chain(bodies: Sequence[ChainBody], ties: Sequence[ChainLink] = ()) -> C
         row[at.FORCE_SCALE] = max(
             row[at.FORCE_SCALE], link_force_rounding(ties) / ROUNDING_OF_FORCES
         )
-    return kind(*chain_numbers(rows))
+    return with_workspace(kind(*chain_numbers(rows)))
 
 
 def with_friction(bare: Chain, frictions: Sequence[tuple[float, float, float]]) -> Chain:
@@ -70,7 +71,8 @@ def with_friction(bare: Chain, frictions: Sequence[tuple[float, float, float]]) 
         math.isfinite(friction[0]) for friction in frictions
     )
     kind = SlippingChain if deformable else SlippingRigidChain
-    return kind(bare.body_count, np.concatenate([bare.rows, friction_numbers(frictions)]))
+    array = np.concatenate([bare.rows[: bare.workspace_end()], np.ravel(frictions)])
+    return with_workspace(kind(bare.body_count, array))
 
 
 def chain_model(
@@ -136,18 +138,9 @@ def chain_model(
                 for k in range(count if frictions else 0)
                 for name in ("slip", "slip_velocity")
             ),
-            *link_columns(len(ties), tied),
+            *link_columns(len(ties), tied), *((MOMENT_OF_LINKS,) if ties else ()),
         ),
-        memory=(
-            *MEMORY, *(f"held_place_of_{k}" for k in range(1, count)), "body_of_event",
-            *(SET_MEMORY if isinstance(system, RigidChain) else ()),
-            *(
-                f"{name}_of_{k}"
-                for k in range(count if frictions else 0)
-                for name in ("slip_offset", "peak_slip_left", "peak_slip_right")
-            ),
-            *(("link_of_event",) if ties else ()),
-        ),
+        memory=_memory_names(system),
         shows_bodies=count > 1,
         links=tied,
         selects=True,
@@ -168,6 +161,21 @@ def chain_model(
             [each for k, both in enumerate(limits, 1) for each in (*both, *_weights(count, k))]
         ),
     )  # fmt: skip
+
+
+def _memory_names(system: Chain) -> tuple[str, ...]:
+    """Return the names of the numbers that a chain remembers."""
+    count = system.body_count
+    names = [*MEMORY, *(f"held_place_of_{k}" for k in range(1, count)), "body_of_event"]
+    if isinstance(system, RigidChain):
+        names += SET_MEMORY
+    if isinstance(system, SlippingBodies):
+        names += [
+            f"{name}_of_{k}"
+            for k in range(count)
+            for name in ("slip_offset", "peak_slip_left", "peak_slip_right")
+        ]
+    return (*names, "link_of_event") if isinstance(system, LinkedBodies) else tuple(names)
 
 
 def _weights(count: int, k: int) -> Vector:
@@ -223,17 +231,6 @@ def link_scales(system: LinkMechanics, ties: Sequence[ChainLink]) -> list[float]
 def link_guard_tolerance(tie: ChainLink) -> Vector:
     """Return the rounding noise of a link's guards."""
     return np.full(GUARDS_OF_LINK, ROUNDING * tie.length_scale)
-
-
-def link_columns(ties: int, shown: int) -> Iterator[Column]:
-    """Return the columns of links; users do not see those of loads, which come last."""
-    for i in range(ties):
-        kind = "restrainer" if i < shown else "unused_load"
-        yield Column(column_of(f"{kind}_force", i), per_mass=True)
-        yield Column(column_of(f"{kind}_elongation", i))
-        yield Column(column_of(f"{kind}_state", i))
-    if ties:
-        yield Column(LINK_MOMENT, per_mass=True)
 
 
 def _scales(bodies: Sequence[ChainBody]) -> Vector:
@@ -319,7 +316,8 @@ def _initial(system: Chain, starts: StartConditions, start: Start) -> tuple[int,
     """Return mode, state and memory at the start: all at rest but body 0, as `start` says."""
     count = len(starts.bodies)
     state = np.zeros(2 * BODY_DOF * count + system.variables())
-    memory = np.zeros(len(MEMORY) + count)
+    memory = np.zeros(len(_memory_names(system)))
+    system.reset_event(memory)
     placements, mode = _initial_placements(system.on_base(0), starts, start), 0
     for k, placement in enumerate(placements):
         moving = k == 0
@@ -340,14 +338,13 @@ def _initial(system: Chain, starts: StartConditions, start: Start) -> tuple[int,
         )
         mode = system.with_body_mode(mode, k, body_mode)
     if isinstance(system, RigidChain):
-        memory = np.concatenate([memory, [1.0, 0.0, 0.0]])
         system.project_onto_contacts(mode, state, memory)
-    if isinstance(system, LinkedBodiesOnGround):
+    if isinstance(system, LinkedRigidChain):
         system.store_held_place(mode, state, memory)
     if isinstance(system, SlippingBodies):
-        places = [system.contact_point(k, mode, state, memory) for k in range(count)]
-        memory = np.concatenate([memory, *([-place, 0.0, 0.0] for place in places)])
+        for k in range(count):
+            place = system.contact_point(k, mode, state, memory)
+            memory[system.slip_memory(k) + OFFSET] = -place
     if isinstance(system, LinkedBodies):
-        memory = np.append(memory, 0.0)
         mode = system.start_links(mode, state)
     return mode, state, memory

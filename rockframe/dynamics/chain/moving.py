@@ -242,14 +242,9 @@ class MovingBodies(ChainArray):
         return 0.0
 
     @inlined
-    def link_force_x(self, k: int) -> float:
-        """Return the last resultant of links on a body, to the right: there are none here."""
-        return 0.0
-
-    @inlined
-    def link_force_y(self, k: int) -> float:
-        """Return the last resultant of links on a body, upwards: there are none here."""
-        return 0.0
+    def resultant_of_links(self, k: int) -> tuple[float, float]:
+        """Return the last resultant of links on a body, right and up: there are none here."""
+        return 0.0, 0.0
 
     @kernel
     def forces_from_slope(self, mode: int, state: Vector, slope: Slope, ground: Ground) -> None:
@@ -279,10 +274,11 @@ class MovingBodies(ChainArray):
         force_x = force_y = 0.0
         for k in range(self.body_count):
             i, mass = k * BODY_STRIDE, self.row_value(k, at.MASS)
-            force_x += mass * (work[i + at.ACCELERATION_X] + ground.x) - self.link_force_x(k)
+            links_x, links_y = self.resultant_of_links(k)
+            force_x += mass * (work[i + at.ACCELERATION_X] + ground.x) - links_x
             vertical = work[i + at.ACCELERATION_Y] + self.row_value(k, at.GRAVITY) + ground.y
             force_y += mass * vertical
-            force_y -= self.link_force_y(k)
+            force_y -= links_y
             sine, cosine = work[i + at.SINE], work[i + at.COSINE]
             work[i + at.TANGENTIAL_FORCE] = cosine * force_x - sine * force_y
             work[i + at.NORMAL_FORCE] = sine * force_x + cosine * force_y
@@ -329,11 +325,8 @@ class MovingBodies(ChainArray):
         """Return the place of a body's centre of mass along the body below, or along the ground."""
         if k + 1 < self.body_count:
             return state[self.horizontal_of(k)]
-        part, body = self.on_base(k), self.state_of(k, state)
-        attitude = part.body.attitude(body.rotation)
-        return part.horizontal_position(
-            self.body_mode(mode, k), body, attitude, memory[HELD_PLACE + k]
-        )
+        body_mode, body = self.body_mode(mode, k), self.state_of(k, state)
+        return self.on_base(k).horizontal_position(body_mode, body, memory[HELD_PLACE + k])
 
     @kernel
     def response(

@@ -25,7 +25,7 @@ from rockframe.dynamics.chain.motion import set_inertia_loads
 from rockframe.dynamics.chain.rows import GUARDS
 from rockframe.dynamics.events import FULL, IMPACT, REST, SEPARATION, SILENT, UPLIFT
 from rockframe.dynamics.on_base import Mode
-from rockframe.dynamics.pads import CORNER_GUARDS, REENGAGE
+from rockframe.dynamics.pads import CORNER_GUARDS, ENGAGING, LEAVING, REENGAGE, TOUCHING
 from rockframe.dynamics.protocol import HELD_PLACE, IMPACT_LOSS, LAST_EVENT, REPINNING_LOSS, Ground
 from rockframe.dynamics.switching import (
     end_speed,
@@ -95,9 +95,7 @@ class RigidChain(RigidImpulses):
             # the rule of restraint may change a held point without an impact: contacts stay
             if memory[LAST_EVENT] != IMPACT or not self.needs_new_impulses(closed, new):
                 return new
-            ends = self.landed_ends(k, left, mode, new)
-            new = self.find_new_impulses(k, ends, closed, new, state, ground, memory)
-            stop_negligible_rebound(self, self.on_base(k), k, left, new, state, ground, memory)
+            new = self.find_new_impulses(k, left, closed, mode, new, state, ground, memory)
             # the impulse of the hold is a part of the landing impulse, and has been scaled with it
             memory[IMPACT_LOSS] += memory[REPINNING_LOSS] - pinned
             memory[REPINNING_LOSS] = pinned
@@ -148,7 +146,7 @@ class RigidChain(RigidImpulses):
         """
         k, left = guard // GUARDS, guard % GUARDS < CORNER_GUARDS
         part, was = self.on_base(k), self.body_mode(mode, k)
-        waits = part.base.waiting(was.contact, left)
+        waits = part.base.with_end(was.contact, left, LEAVING)
         holds = part.flies(was.contact) or waits == was.contact
         if holds or not self.has_falling_force(k, left, mode, state, ground):
             new = self.release_tension_corners(k, left, mode, state, ground, memory)
@@ -157,7 +155,8 @@ class RigidChain(RigidImpulses):
         lost, place = memory[REPINNING_LOSS], memory[HELD_PLACE + k]
         new = self.switch_on_base(mode, guard, state, ground, memory)
         contact = self.body_mode(new, k).contact
-        if contact != part.base.unpressed(contact, left) or not self.has_sinking_corner(new, state):
+        stays = contact == part.base.with_end(contact, left, ENGAGING)
+        if not stays or not self.has_sinking_corner(new, state):
             return new
         self.blend_velocities(before, 0.0, state)
         memory[REPINNING_LOSS], memory[HELD_PLACE + k] = lost, place
@@ -176,7 +175,7 @@ class RigidChain(RigidImpulses):
         part, was, body = self.on_base(k), self.body_mode(mode, k), self.state_of(k, state)
         if not part.flies(was.contact):
             return mode
-        sliding = part.mode_for_contact(part.base.held(was.contact, left), body)
+        sliding = part.mode_for_contact(part.base.with_end(was.contact, left, TOUCHING), body)
         sliding = Mode(sliding.contact, sliding.pivot, True)
         self.find_forces(self.with_body_mode(mode, k, sliding), state, ground)
         corners = self.bearing_corners(mode)
@@ -187,7 +186,7 @@ class RigidChain(RigidImpulses):
         if corners == self.bearing_corners(mode):
             return mode
         parted = self.with_bearing_corners(mode, corners, self.tension_corners(mode) & corners)
-        reach = part.body.reach(part.body.pin(sliding.pivot), part.body.attitude(body.rotation))
+        reach = part.body.reach_about(sliding.pivot, body.rotation)
         slip = body.horizontal_velocity - reach.derivative * body.angular_velocity
         if (
             slip * lift_per_slip(self, part, k, self.with_body_mode(parted, k, sliding), state)
@@ -276,14 +275,19 @@ class RigidChain(RigidImpulses):
 
     @kernel
     def find_new_impulses(
-        self, k: int, ends: int, closed: int, mode: int, state: Vector, ground: Ground,
-        memory: Vector,
+        self, k: int, left: bool, closed: int, before: int, mode: int, state: Vector,
+        ground: Ground, memory: Vector,
     ) -> int:  # fmt: skip
         """Undo impulses of rigid bases in an event elsewhere; find new ones, in compression only.
 
         They act at the corners `closed`. The impulse at the ends of body `k` that have landed is
-        scaled, so that these do not rebound faster than restitution allows.
+        scaled, so that these do not rebound faster than restitution allows. `before` is the mode
+        before the event.
         """
+        part = self.on_base(k)
+        both = part.flies(self.body_mode(before, k).contact)  # both ends may have landed together
+        both &= part.base.is_held(self.body_mode(mode, k).contact, not left)
+        ends = BOTH if both else LEFT_ONLY if left else RIGHT_ONLY
         free = self.release_all(mode, state, memory)
         self.project_onto_contacts(free, state, memory)
         kinetic, flying = self.energies(free, state).kinetic, self.with_bearing_corners(free, 0, 0)
@@ -293,6 +297,7 @@ class RigidChain(RigidImpulses):
         new = self.choose_bearing_corners(free, closed, closed, 0, state, ground, memory)
         new = self.hold_small_rebounds(closed, new, state, ground, memory)
         new = self.rest_repeatedly(new, state, ground, memory)
+        stop_negligible_rebound(self, part, k, left, new, state, ground, memory)
         memory[LAST_EVENT] = event
         return new
 

@@ -11,17 +11,21 @@ from rockframe.compiled import Vector, inlined, kernel
 from rockframe.dynamics.body import with_accelerations
 from rockframe.dynamics.chain import rows as at
 from rockframe.dynamics.chain.corners import IN_TENSION
-from rockframe.dynamics.chain.impact import JAMMED, BearingCorners, find_bearing_corners
+from rockframe.dynamics.chain.impact import (
+    JAMMED,
+    ROUNDING,
+    BearingCorners,
+    find_bearing_corners,
+)
 from rockframe.dynamics.chain.motion import set_inertia_loads
 from rockframe.dynamics.chain.rigid import ADMISSIBLE_COUNT, CHOSEN_CORNERS, NEXT_BEST_CORNERS
 from rockframe.dynamics.chain.rows import BODY_STRIDE, GUARDS
 from rockframe.dynamics.chain.slip_trials import SlipTrials
-from rockframe.dynamics.chain.slips import OFFSET, ROUNDING, STATIC
+from rockframe.dynamics.chain.slips import OFFSET, STATIC
 from rockframe.dynamics.events import IMPACT, REST, SILENT, STICK
 from rockframe.dynamics.on_base import HOLD, SLIP, Mode
-from rockframe.dynamics.pads import CORNER_GUARDS
+from rockframe.dynamics.pads import CORNER_GUARDS, LEAVING
 from rockframe.dynamics.protocol import HELD_PLACE, IMPACT_LOSS, LAST_EVENT, Ground
-from rockframe.dynamics.switching import stop_negligible_rebound
 
 FRICTION_CHANGED: Final = -1
 """In place of the leaving corner: only friction has changed."""
@@ -104,7 +108,7 @@ class SlippingRigidChain(SlipTrials):
                     rises = self.end_accelerations(k, mode, state, ground)
                     line = with_accelerations(line, rises[0], rises[1])
                     if part.base.will_press(left, line, ()):
-                        contact = part.base.waiting(contact, left)
+                        contact = part.base.with_end(contact, left, LEAVING)
             mode = self.with_body_mode(mode, k, Mode(contact, body_mode.pivot, body_mode.slides))
         return mode
 
@@ -148,10 +152,8 @@ class SlippingRigidChain(SlipTrials):
             return new
         if memory[LAST_EVENT] == IMPACT:
             if self.needs_new_impulses(closed, new):
-                part, left = self.on_base(k), which < CORNER_GUARDS
-                ends = self.landed_ends(k, left, mode, new)
-                new = self.find_new_impulses(k, ends, closed, new, state, ground, memory)
-                stop_negligible_rebound(self, part, k, left, new, state, ground, memory)
+                left = which < CORNER_GUARDS
+                new = self.find_new_impulses(k, left, closed, mode, new, state, ground, memory)
             for other in range(self.body_count):
                 if not self.is_slippery(other):
                     new = self.disturbed_mode(other, new, state)
@@ -169,7 +171,7 @@ class SlippingRigidChain(SlipTrials):
     def store_slips(self, mode: int, state: Vector, memory: Vector) -> None:
         """Store the slips of all bodies before an event, and note which of them slip."""
         self.update_peak_slips(mode, state, memory)
-        self.write_trial_slips(mode)
+        self.restore_trial_slips(mode, False)
         for k in range(self.body_count):
             memory[self.slip_memory(k) + OFFSET] += self.contact_point(k, mode, state, memory)
             self.workspace()[k * BODY_STRIDE + at.STARTING_SENSE] = 0.0
@@ -240,7 +242,7 @@ class SlippingRigidChain(SlipTrials):
         """Return the mode whose corners and slips agree with the forces, by trial of sets."""
         sets, before = HELD_PLACE + self.body_count, self.bearing_corners(mode)
         self.project_onto_contacts(mode, state, memory)  # of bodies that were held and may slip
-        self.write_trial_slips(mode)
+        self.restore_trial_slips(mode, False)
         flying, in_tension = self.with_bearing_corners(mode, 0, 0), self.tension_corners(mode)
         closed, count, free = before | self.resting_corners(mode, state), 0, mode
         corners = BearingCorners(before, 0, -1, 0)
@@ -261,7 +263,7 @@ class SlippingRigidChain(SlipTrials):
             closed = before | self.resting_corners(stopped, state)
         ways = corners.admissible
         if corners.admissible == 0 and corners.held == 0:
-            self.write_trial_slips(mode)
+            self.restore_trial_slips(mode, False)
             self.find_forces(mode, state, ground)
             for k in range(self.body_count):
                 self.violates_friction(k, mode, state)

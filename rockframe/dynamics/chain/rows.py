@@ -16,10 +16,11 @@ from rockframe.dynamics.bed import Bed, Rigid
 from rockframe.dynamics.bodies import BODY_DOF, StateAccess
 from rockframe.dynamics.body import BY_CONTACT, Body, BodyState
 from rockframe.dynamics.chain.any_base import MAX_LAW_NUMBERS, ON_BED, ON_PADS, ON_RIGID, AnyBase
+from rockframe.dynamics.chain.returned import ReturnedArrays
 from rockframe.dynamics.on_base import BODY_GUARDS, BodyOnBase, Mode
 from rockframe.dynamics.pads import CORNER, CORNER_GUARDS, ElasticPads
 from rockframe.dynamics.point_law import Viscoelastic
-from rockframe.dynamics.protocol import POWERS, CalledBySteps
+from rockframe.dynamics.protocol import CalledBySteps
 
 # columns of a row: the fields of `Body` in their order, among them
 INERTIA: Final = 3  # about the centre of mass, over the reference mass [m^2]
@@ -117,8 +118,7 @@ RIGHT_HAND_SIDE: Final = 15  # right-hand side of its equation, reduced by elimi
 # whether the force of this constraint, or of one before it, is not along its Jacobian
 UNSYMMETRIC: Final = 16
 CONSTRAINT_STRIDE: Final = 17  # numbers of a constraint
-# then slopes, guards and their rates, velocities, columns, the matrix of the constraints, and the
-# inputs of the last solution for forces
+# then velocities, the matrix of the constraints, and the inputs of the last solution for forces
 
 GUARDS: Final = 2 * CORNER_GUARDS + BODY_GUARDS
 """Guards of each body."""
@@ -141,15 +141,6 @@ INPUTS_BEFORE_STATE: Final = 4
 """Numbers before the state in `solved_inputs`: both halves of the mode, and ground acceleration."""
 
 
-@kernel
-def workspace_length(count: int) -> int:
-    """Return the length of the workspace behind the rows, for a number of bodies."""
-    per_body = (
-        BODY_STRIDE + MAX_CONSTRAINTS * CONSTRAINT_STRIDE + 4 * BODY_DOF + 2 * GUARDS + COLUMNS
-    )
-    return count * per_body + POWERS + (MAX_CONSTRAINTS * count) ** 2 + INPUTS_BEFORE_STATE
-
-
 class ChainNumbers(NamedTuple):
     """The numbers of a chain."""
 
@@ -157,7 +148,7 @@ class ChainNumbers(NamedTuple):
     rows: Vector  # the rows of all bodies, then the workspace
 
 
-class ChainArray(StateAccess, CalledBySteps, ChainNumbers):
+class ChainArray(ReturnedArrays, StateAccess, CalledBySteps, ChainNumbers):
     """Access to the rows and the workspace of a chain. A mixin of systems."""
 
     __slots__ = ()
@@ -186,61 +177,59 @@ class ChainArray(StateAccess, CalledBySteps, ChainNumbers):
         )
 
     @inlined
-    def slopes(self) -> Vector:
-        """Return the workspace for accelerations and powers."""
-        return view_of(self.rows, self.constraints_end(), BODY_DOF * self.body_count + POWERS)
-
-    @inlined
     def constraints_end(self) -> int:
         """Return the index behind the constraints."""
         return self.body_count * (ROW_STRIDE + BODY_STRIDE + MAX_CONSTRAINTS * CONSTRAINT_STRIDE)
 
     @inlined
-    def guard_workspace(self, which: int) -> Vector:
-        """Return the workspace for guards (0) or their rates (1)."""
-        first = self.constraints_end() + self.body_count * (BODY_DOF + which * GUARDS) + POWERS
-        return view_of(self.rows, first, GUARDS * self.body_count)
-
-    @inlined
     def velocity_workspace(self) -> Vector:
         """Return the workspace for velocities."""
-        first = self.constraints_end() + self.body_count * (BODY_DOF + 2 * GUARDS) + POWERS
-        return view_of(self.rows, first, BODY_DOF * self.body_count)
-
-    @inlined
-    def column_workspace(self) -> Vector:
-        """Return the workspace for columns."""
-        first = self.constraints_end() + self.body_count * (2 * BODY_DOF + 2 * GUARDS) + POWERS
-        return view_of(self.rows, first, COLUMNS * self.body_count)
+        return view_of(self.rows, self.constraints_end(), BODY_DOF * self.body_count)
 
     @inlined
     def constraint_matrix(self) -> Vector:
         """Return the matrix of the constraints: responses of each to the forces of the others."""
-        per_body = 2 * BODY_DOF + 2 * GUARDS + COLUMNS
-        first = self.constraints_end() + self.body_count * per_body + POWERS
+        first = self.constraints_end() + BODY_DOF * self.body_count
         return view_of(self.rows, first, (MAX_CONSTRAINTS * self.body_count) ** 2)
 
     @inlined
     def solved_inputs(self) -> Vector:
         """Return the mode, ground acceleration and state of the last solution for forces."""
-        first = self.chain_end() - INPUTS_BEFORE_STATE - 2 * BODY_DOF * self.body_count
+        first = self.workspace_end() - INPUTS_BEFORE_STATE - 2 * BODY_DOF * self.body_count
         return view_from(self.rows, first)
 
     @inlined
-    def chain_end(self) -> int:
+    def workspace_end(self) -> int:
         """Return the index behind rows and workspace."""
-        return self.body_count * ROW_STRIDE + workspace_length(self.body_count)
+        matrix, states = (MAX_CONSTRAINTS * self.body_count) ** 2, 3 * BODY_DOF * self.body_count
+        return self.constraints_end() + matrix + states + INPUTS_BEFORE_STATE
+
+    @inlined
+    def bodies_end(self) -> int:
+        """Return the index behind all that belongs to the bodies."""
+        return self.workspace_end()
+
+    @inlined
+    def returned_start(self) -> int:
+        """Return the index of the workspace for what the equations return."""
+        return self.bodies_end()
+
+    @inlined
+    def body_column_count(self) -> int:
+        """Return the number of columns of all bodies and their bases."""
+        return COLUMNS * self.body_count
+
+    @inlined
+    def columns(self) -> int:
+        """Return the number of columns."""
+        return self.body_column_count()
 
     @inlined
     def on_base(self, k: int) -> BodyOnBase:
         """Return a body on its base."""
         r = view_from(self.rows, k * ROW_STRIDE)
         body = Body(r[0], r[1], r[2], r[3], r[4], r[5], int(r[6]), r[7] != 0.0)
-        n = view_from(r, LAW_NUMBERS)
-        base = AnyBase(
-            int(r[LAW]), n[0], n[1], n[2], n[3], n[4], n[5], n[6], n[7], n[8], n[9],
-        )  # fmt: skip
-        return BodyOnBase(body, base)
+        return BodyOnBase(body, AnyBase(int(r[LAW]), view_from(r, LAW_NUMBERS)))
 
     @inlined
     def constrained_state(self, k: int, body_mode: Mode, state: Vector) -> BodyState:
@@ -313,9 +302,9 @@ def body_row(body: Body, base: BaseNumbers, mass: float, top: float, offset: flo
 
 
 def chain_numbers(rows: Sequence[Vector]) -> ChainNumbers:
-    """Return the array of a chain from the rows of its bodies, from the top down."""
-    count, value = len(rows), 1
+    """Return the numbers of a chain, as yet without a workspace, from the top down."""
+    value = 1
     for row in rows:
         row[PLACE_VALUE] = value
         value *= int(row[MODE_COUNT])
-    return ChainNumbers(count, np.concatenate([*rows, np.zeros(workspace_length(count))]))
+    return ChainNumbers(len(rows), np.concatenate(rows))

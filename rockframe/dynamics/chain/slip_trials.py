@@ -11,13 +11,19 @@ import math
 from typing import Final
 
 from rockframe.compiled import Vector, inlined, kernel
-from rockframe.dynamics.bodies import BEFORE_HORIZONTAL, ROTATION, VERTICAL
 from rockframe.dynamics.body import PIVOT_LEFT, PIVOT_RIGHT
 from rockframe.dynamics.chain import rows as at
 from rockframe.dynamics.chain.corners import NO_CONSTRAINT
-from rockframe.dynamics.chain.impact import BOTH, LEFT_ONLY, NOISE, Trial, bit_count, solve_trial
+from rockframe.dynamics.chain.impact import (
+    BOTH,
+    LEFT_ONLY,
+    NOISE,
+    ROUNDING,
+    Trial,
+    bit_count,
+    solve_trial,
+)
 from rockframe.dynamics.chain.motion import (
-    FREE,
     add_constraint,
     combined_acceleration,
     tangential_coriolis,
@@ -26,7 +32,7 @@ from rockframe.dynamics.chain.motion import (
 from rockframe.dynamics.chain.rigid import RigidChain
 from rockframe.dynamics.chain.rows import BODY_STRIDE, CONSTRAINT_STRIDE, MAX_CONSTRAINTS
 from rockframe.dynamics.chain.slippery import SlipperyBases
-from rockframe.dynamics.chain.slips import IMPULSIVE, KINETIC, MAX_SLIP_CHANGES, ROUNDING, STATIC
+from rockframe.dynamics.chain.slips import IMPULSIVE, KINETIC, MAX_SLIP_CHANGES, STATIC
 from rockframe.dynamics.on_base import SPEED_ROUNDING, Mode
 
 NO_PIVOT: Final = -1
@@ -54,20 +60,12 @@ class SlipTrials(SlipperyBases, RigidChain):
             return self.sense(mode, k)
         return 0.0
 
-    @kernel
-    def write_trial_slips(self, mode: int) -> None:
-        """Write the senses of slips of a mode as those of the present trial."""
-        work = self.workspace()
-        for k in range(self.body_count):
-            work[k * BODY_STRIDE + at.SLIP_SENSE] = self.sense_or_zero(mode, k)
-
     @inlined
     def restore_trial_slips(self, mode: int, impulsive: bool) -> None:
         """Restore the slips of a mode for the next trial; none in an impact, where all are held."""
-        self.write_trial_slips(mode)
-        if impulsive:
-            for k in range(self.body_count):
-                self.workspace()[k * BODY_STRIDE + at.SLIP_SENSE] = 0.0
+        for k in range(self.body_count):
+            sense = 0.0 if impulsive else self.sense_or_zero(mode, k)
+            self.workspace()[k * BODY_STRIDE + at.SLIP_SENSE] = sense
 
     @kernel
     def with_rigid_slip(self, k: int, bears: int, mode: int) -> int:
@@ -144,23 +142,6 @@ class SlipTrials(SlipperyBases, RigidChain):
                 rows[direction + 4] -= y
                 rows[direction + 5] += ratio * (reach - work[i + at.NORMAL])
         work[i + at.FRICTION_RATIO] = ratio
-
-    @kernel
-    def complete_solution(self, work: Vector, out: Vector) -> None:
-        """Write the friction of slipping bodies; set accelerations to zero in full contact."""
-        for k in range(self.body_count):
-            i = k * BODY_STRIDE
-            left, right = work[i + at.LEFT_CONSTRAINT], work[i + at.RIGHT_CONSTRAINT]
-            if not self.is_rigid(k) or (left == NO_CONSTRAINT and right == NO_CONSTRAINT):
-                continue
-            if work[i + at.HOLD_STATE] == FREE:
-                press = self.corner_force(k, True) + self.corner_force(k, False)
-                work[i + at.TANGENTIAL_FORCE] = work[i + at.FRICTION_RATIO] * press
-            if left != NO_CONSTRAINT and right != NO_CONSTRAINT:
-                first = BEFORE_HORIZONTAL * k
-                out[first + ROTATION] = out[first + VERTICAL] = 0.0
-                if work[i + at.HOLD_STATE] != FREE:
-                    out[self.horizontal_of(k)] = 0.0
 
     @kernel
     def friction_loss(self, k: int, which: int, state: Vector, work: Vector, rows: Vector) -> float:
@@ -437,7 +418,7 @@ class SlipTrials(SlipperyBases, RigidChain):
         """Return the acceleration of the slip of a point, or its change in an impact."""
         i, part, body = k * BODY_STRIDE, self.on_base(k), self.state_of(k, state)
         work, rows, rate = self.workspace(), self.constraints(), body.angular_velocity
-        reach = part.body.reach(part.body.pin(pivot), part.body.attitude(body.rotation))
+        reach = part.body.reach_about(pivot, body.rotation)
         spare = MAX_CONSTRAINTS * self.body_count - 1  # a slipping body has no hold: free
         jacobian = spare * CONSTRAINT_STRIDE + at.JACOBIAN
         write_jacobian(self, k, 1.0, 0.0, -reach.derivative, jacobian, work, rows)

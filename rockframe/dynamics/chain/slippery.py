@@ -23,7 +23,7 @@ from rockframe.dynamics.chain.slips import IMPULSIVE, SlippingBodies
 from rockframe.dynamics.coulomb import ImpulseResponse, coulomb_impulse
 from rockframe.dynamics.events import IMPACT, PIVOT_CHANGE, REENGAGEMENT, SEPARATION, SILENT
 from rockframe.dynamics.on_base import SPEED_ROUNDING, Mode
-from rockframe.dynamics.pads import CORNER_GUARDS
+from rockframe.dynamics.pads import CORNER_GUARDS, ENGAGING, LEAVING
 from rockframe.dynamics.protocol import IMPACT_LOSS, LAST_EVENT, Ground
 from rockframe.dynamics.switching import end_speed, next_pivot
 
@@ -267,7 +267,7 @@ class SlipperyBases(SlippingBodies):
         grows = part.base.will_press(left, line, ())
         contact = body_mode.contact
         if event == SEPARATION and grows and part.base.presses(contact, left, line, ()):
-            contact = part.base.waiting(contact, left)
+            contact = part.base.with_end(contact, left, LEAVING)
         elif event == REENGAGEMENT and not grows:
-            contact = part.base.unpressed(contact, left)
+            contact = part.base.with_end(contact, left, ENGAGING)
         return self.with_body_mode(mode, k, Mode(contact, body_mode.pivot, body_mode.slides))

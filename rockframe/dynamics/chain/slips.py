@@ -5,15 +5,13 @@ The mode says which, and the sense of the slip.
 """
 
 import math
-from collections.abc import Sequence
 from typing import Final
 
-import numpy as np
-
-from rockframe.compiled import Vector, inlined, kernel, view_of
+from rockframe.compiled import Vector, inlined, kernel
 from rockframe.dynamics import events
 from rockframe.dynamics.bodies import BEFORE_HORIZONTAL, ROTATION
 from rockframe.dynamics.chain import rows as at
+from rockframe.dynamics.chain.impact import ROUNDING
 from rockframe.dynamics.chain.motion import add_tangential_load
 from rockframe.dynamics.chain.rows import BODY_STRIDE, COLUMNS
 from rockframe.dynamics.chain.system import Chain
@@ -26,7 +24,7 @@ STATIC: Final = 0
 KINETIC: Final = 1
 IMPULSIVE: Final = 2  # in impacts
 FRICTION_STRIDE: Final = 3
-"""Coefficients of each body, behind the array of the chain; the workspace for columns follows."""
+"""Coefficients of each body, behind the array of the chain."""
 SLIP_COLUMNS: Final = 2  # slip and its rate
 
 OFFSET: Final = 0  # slip less the place of the held point [m]
@@ -35,8 +33,6 @@ PEAK_RIGHT: Final = 2
 SLIP_MEMORY: Final = 3
 """Numbers of the slip of each body in the memory, behind those of the chain."""
 
-ROUNDING: Final = 1e-12
-"""Rounding noise of accelerations over gravity [1]."""
 MAX_SLIP_CHANGES: Final = 6
 """Changes of the slips, for each body, after which a search changes its method or stops."""
 
@@ -49,19 +45,17 @@ class SlippingBodies(Chain):
     @inlined
     def friction_coefficient(self, k: int, which: int) -> float:
         """Return a coefficient of friction under a body."""
-        return float(self.rows[self.chain_end() + FRICTION_STRIDE * k + which])
+        return float(self.rows[self.workspace_end() + FRICTION_STRIDE * k + which])
 
     @inlined
-    def column_workspace(self) -> Vector:
-        """Return the workspace for columns."""
-        first = self.chain_end() + FRICTION_STRIDE * self.body_count
-        return view_of(self.rows, first, (COLUMNS + SLIP_COLUMNS) * self.body_count)
+    def bodies_end(self) -> int:
+        """Return the index behind all that belongs to the bodies."""
+        return self.workspace_end() + FRICTION_STRIDE * self.body_count
 
     @inlined
-    def friction_end(self) -> int:
-        """Return the index behind the coefficients of friction and the columns."""
-        count = self.body_count
-        return self.chain_end() + (FRICTION_STRIDE + COLUMNS + SLIP_COLUMNS) * count
+    def body_column_count(self) -> int:
+        """Return the number of columns of all bodies, their bases and slips."""
+        return (COLUMNS + SLIP_COLUMNS) * self.body_count
 
     @kernel
     def modes(self) -> int:
@@ -89,32 +83,22 @@ class SlippingBodies(Chain):
     @kernel
     def pivot_slip_rate(self, k: int, pivot: int, state: Vector) -> tuple[float, float]:
         """Return the velocity of slip of a point of a base, and its rounding noise."""
-        part, body = self.on_base(k), self.state_of(k, state)
-        pin = part.body.pin(pivot)
-        about = (
-            part.body.reach(pin, part.body.attitude(body.rotation)).derivative
-            * body.angular_velocity
-        )
+        law, body = self.on_base(k).body, self.state_of(k, state)
+        about = law.reach_about(pivot, body.rotation).derivative * body.angular_velocity
         sway = body.horizontal_velocity
         return sway - about, SPEED_ROUNDING * (abs(sway) + abs(about))
 
     @inlined
     def contact_point(self, k: int, mode: int, state: Vector, memory: Vector) -> float:
         """Return the place along the base of the point that is held, or slips."""
-        part, body = self.on_base(k), self.state_of(k, state)
-        pin = part.body.pin(self.body_mode(mode, k).pivot)
-        attitude = part.body.attitude(body.rotation)
-        return self.centre_position(k, mode, state, memory) - part.body.about_pin(pin, attitude)
+        law, rotation = self.on_base(k).body, self.state_of(k, state).rotation
+        away = law.from_pivot(self.body_mode(mode, k).pivot, rotation)
+        return self.centre_position(k, mode, state, memory) - away
 
     @inlined
     def slip_memory(self, k: int) -> int:
         """Return the index in the memory of the first number of a body's slip."""
         return self.event_memory_end() + SLIP_MEMORY * k
-
-    @inlined
-    def link_event_index(self) -> int:
-        """Return the index in the memory of the last event's link, in a chain with links."""
-        return self.slip_memory(self.body_count)
 
     @inlined
     def update_peak_slips(self, mode: int, state: Vector, memory: Vector) -> None:
@@ -181,7 +165,7 @@ class SlippingBodies(Chain):
             hold -= abs(self.workspace()[k * BODY_STRIDE + at.TANGENTIAL_FORCE])
             return SlidingGuards(hold / size, 1.0, 0.0)
         law, sense, rate = self.on_base(k).body, self.sense(mode, k), body.angular_velocity
-        reach = law.reach(law.pin(body_mode.pivot), law.attitude(body.rotation))
+        reach = law.reach_about(body_mode.pivot, body.rotation)
         scale = 1.0 / math.sqrt(law.gravity * law.size())
         change = slope[self.horizontal_of(k)] - reach.second_derivative * rate * rate
         change -= reach.derivative * slope[BEFORE_HORIZONTAL * k + ROTATION]
@@ -277,9 +261,3 @@ class SlippingBodies(Chain):
         slips = memory[self.slip_memory(k) :]
         residual = self.slip_of(k, mode, state, memory)
         return residual, float(slips[PEAK_LEFT]), float(slips[PEAK_RIGHT])
-
-
-def friction_numbers(frictions: Sequence[tuple[float, float, float]]) -> Vector:
-    """Return the coefficients of friction of all bases, then a workspace for columns."""
-    work = (COLUMNS + SLIP_COLUMNS) * len(frictions)
-    return np.concatenate([np.ravel(frictions), np.zeros(work)])

@@ -24,10 +24,15 @@ class Chain(MovingBodies):
 
     __slots__ = ()
 
+    @inlined
+    def body_guard_count(self) -> int:
+        """Return the number of guards of all bodies."""
+        return GUARDS * self.body_count
+
     @kernel
     def guards(self) -> int:
         """Return the number of guards, of each body in turn."""
-        return GUARDS * self.body_count
+        return self.body_guard_count()
 
     @kernel
     def modes(self) -> int:
@@ -110,11 +115,6 @@ class Chain(MovingBodies):
     def event_memory_end(self) -> int:
         """Return the index in the memory behind the numbers of the last event."""
         return HELD_PLACE + self.body_count + 1
-
-    @inlined
-    def link_event_index(self) -> int:
-        """Return the index in the memory of the last event's link, in a chain with links."""
-        return self.event_memory_end()
 
     @inlined
     def switch_on_base(
@@ -202,7 +202,7 @@ class Chain(MovingBodies):
             out[j + 8], out[j + 9] = work[i + at.ACCELERATION_X], work[i + at.ACCELERATION_Y]
             out[j + 10], out[j + 11] = work[i + at.TANGENTIAL_FORCE], work[i + at.NORMAL_FORCE]
             out[j + 12], out[j + 13] = body.rotation, body.vertical
-            put(self.base_columns(k, body_mode, body), j + COLUMNS - BASE_COLUMNS, out)
+            put(self.base_columns(k, mode, body), j + COLUMNS - BASE_COLUMNS, out)
             self.write_slip_columns(k, mode, state, memory, out)
         return out
 
@@ -217,14 +217,13 @@ class Chain(MovingBodies):
         """Find the forces of corners on rigid bases: there are none here."""
 
     @inlined
-    def base_columns(self, k: int, body_mode: Mode, body: BodyState) -> Variables:
+    def base_columns(self, k: int, mode: int, body: BodyState) -> Variables:
         """Return the base's columns in the results."""
-        return self.deformable_base_columns(k, body_mode, body)
+        return self.deformable_base_columns(k, mode, body)
 
     @kernel
-    def deformable_base_columns(self, k: int, body_mode: Mode, body: BodyState) -> Variables:
+    def deformable_base_columns(self, k: int, mode: int, body: BodyState) -> Variables:
         """Return the columns of a deformable base in the results."""
         part = self.on_base(k)
-        if self.is_slippery(k):
-            return part.base.observed(body_mode.contact, part.body.base_line_at(body), ())
-        return part.base_columns(body_mode, body, part.body.attitude(body.rotation), ())
+        line = part.body.base_line_at(body)
+        return part.base.observed(self.contact_with_force(k, mode), line, ())

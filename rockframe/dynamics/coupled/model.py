@@ -2,6 +2,7 @@
 
 from collections.abc import Callable
 from dataclasses import replace
+from functools import partial
 from typing import Final, NamedTuple
 
 import numpy as np
@@ -72,10 +73,7 @@ def coupled(block: ChainBody, cap: ChainBody, mass: float, rest: StackRest) -> C
     return ContactModel(
         name="coupled",
         system=system,
-        rotation_limits=(
-            atan2(body.left, body.height),
-            atan2(body.right, body.height),
-        ),
+        rotation_limits=(atan2(body.left, body.height), atan2(body.right, body.height)),
         rotation_weights=np.array([1.0, 0.0, 1.0, 0.0, 0.0, 0.0]),
         scales=_scales(block, cap),
         guard_tolerance=np.concatenate([guard_tolerances(block.base), guard_tolerances(cap.base)]),
@@ -86,7 +84,7 @@ def coupled(block: ChainBody, cap: ChainBody, mass: float, rest: StackRest) -> C
         fastest_frequency=fastest,
         damping_rate=damping_rate,
         energy_scale=body.gravity * radius_of(body) * body.angle,
-        initial=_starting(system, rest),
+        initial=partial(_initial, system, rest),
         rounding=_rounding(block, cap, fastest),
     )
 
@@ -152,19 +150,15 @@ def state_at(
     return system.with_body_mode(upper.number_of(block_mode), LOWER, cap_mode), state, memory
 
 
-def _starting(system: Coupled, rest: StackRest) -> Callable[[Start], tuple[int, Vector, Vector]]:
-    """Return the function of the initial state: the cap at rest, the block as the start states."""
-
-    def initial(start: Start) -> tuple[int, Vector, Vector]:
-        place = rest
-        is_stated = start.rotation is not None or start.vertical_displacement is not None
-        if is_stated or rest == UPRIGHT:
-            rotation = rest.rotation
-            if start.rotation is not None:
-                rotation = start.rotation - rest.cap_rotation
-            own = system.upper.base.read(np.zeros(system.variables()), 0)
-            block, _ = starting_state(system.upper, replace(start, rotation=rotation), own)
-            place = rest._replace(rotation=block.rotation, vertical=block.vertical)
-        return state_at(system, place, start.angular_velocity, start.vertical_velocity)
-
-    return initial
+def _initial(system: Coupled, rest: StackRest, start: Start) -> tuple[int, Vector, Vector]:
+    """Return mode, state and memory at the start: the cap at rest, the block as stated."""
+    place = rest
+    is_stated = start.rotation is not None or start.vertical_displacement is not None
+    if is_stated or rest == UPRIGHT:
+        rotation = rest.rotation
+        if start.rotation is not None:
+            rotation = start.rotation - rest.cap_rotation
+        own = system.upper.base.read(np.zeros(system.variables()), 0)
+        block, _ = starting_state(system.upper, replace(start, rotation=rotation), own)
+        place = rest._replace(rotation=block.rotation, vertical=block.vertical)
+    return state_at(system, place, start.angular_velocity, start.vertical_velocity)

@@ -274,9 +274,8 @@ class Coupled(Stacked, Pair):
         """Return the place of a centre of mass: a block's along the cap, a cap's on the ground."""
         if k == UPPER:
             return state[HORIZONTAL]
-        own_mode, body = self.modes_in(mode).lower, self.state_of(LOWER, state)
-        attitude = self.lower.body.attitude(body.rotation)
-        return self.lower.horizontal_position(own_mode, body, attitude, memory[HELD_PLACE + LOWER])
+        body, held_at = self.state_of(LOWER, state), memory[HELD_PLACE + LOWER]
+        return self.lower.horizontal_position(self.modes_in(mode).lower, body, held_at)
 
     @kernel
     def response(
