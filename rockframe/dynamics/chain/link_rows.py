@@ -72,7 +72,7 @@ class ChainLink(NamedTuple):
         return length + math.hypot(*self.on_point) + math.hypot(*self.to_point)
 
 
-class Link(NamedTuple):
+class LinkInMode(NamedTuple):
     """A link in a mode and state of the system."""
 
     row: Vector
@@ -198,10 +198,10 @@ class LinkRows(Linkable):
         return view_of(state, 2 * self.coordinates() + i * count, count)
 
     @inlined
-    def link(self, i: int, mode: int, state: Vector) -> Link:
+    def link(self, i: int, mode: int, state: Vector) -> LinkInMode:
         """Return a link as it is in a mode and state."""
         row = self.row_of_link(i)
-        return Link(
+        return LinkInMode(
             row, self.law_of(row), self.link_state(mode, row), self.link_variables(i, state)
         )
 
