@@ -169,8 +169,7 @@ def _read_array(value: object, measure: Measure, name: str) -> Array:
         example = _EXAMPLE_UNITS["time" if measure is TIME else "rotation"]
         msg = (
             f"{OWNER}: {name} needs an array with a unit such as {example}, got "
-            f"{short_repr(value)}; "
-            f"write for example (values, {example!r})"
+            f"{short_repr(value)}; write for example (values, {example!r})"
         )
         raise UnitsError(msg)
     factor = to_si(f"1 {unit}", measure, owner=OWNER, name=name)

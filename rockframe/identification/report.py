@@ -8,12 +8,7 @@ import numpy as np
 import xarray as xr
 
 from rockframe.errors import ModelWarning, warn
-from rockframe.identification.fitting import (
-    MAX_EVALUATIONS,
-    Solution,
-    Uncertainty,
-    uncertainty_of,
-)
+from rockframe.identification.fitting import MAX_EVALUATIONS, Solution, Uncertainty, uncertainty_of
 from rockframe.identification.measured import OWNER, History, MeasuredPeaks
 from rockframe.identification.prediction import Prediction
 from rockframe.identification.unknowns import Circumstance

@@ -138,8 +138,7 @@ def _find_parameter(
             return parameter
         msg = (
             f"{OWNER}: {short_repr(name)} cannot be fitted, since the part was given without it; "
-            "give "
-            f"{matches[0]} as a start value, instead of what stands for it"
+            f"give {matches[0]} as a start value, instead of what stands for it"
         )
         raise ComponentError(msg)
     choice = ", ".join(repr(full) for full in (matches or known))
@@ -147,9 +146,8 @@ def _find_parameter(
         fitted = f"of the parts of the system, which are {choice}" if known else "of other parts"
         msg = (
             f"{OWNER}: {short_repr(name)} is a parameter of an interface of the Stack; fitted are "
-            "those "
-            f"{fitted}. To find that of an interface, compare the measured rotation with runs of a "
-            "sweep over a function that returns the system"
+            f"those {fitted}. To find that of an interface, compare the measured rotation with "
+            "runs of a sweep over a function that returns the system"
         )
         raise ComponentError(msg)
     fault = "several parts have" if matches else "no part of the system has"

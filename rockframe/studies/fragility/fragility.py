@@ -26,12 +26,7 @@ from rockframe.studies.fragility.trials import (
     trials_of_runs,
 )
 from rockframe.studies.fragility.words import POOLED_ATTRIBUTE, fragility_sentences
-from rockframe.studies.intensities import (
-    Intensity,
-    PeriodLike,
-    measure_of_runs,
-    period_attribute,
-)
+from rockframe.studies.intensities import Intensity, PeriodLike, measure_of_runs, period_attribute
 from rockframe.studies.limit_states import (
     LimitState,
     check_runs,

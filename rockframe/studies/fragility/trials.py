@@ -125,8 +125,7 @@ def _check_pooled(
     if wrong:
         msg = (
             f"{owner}: pooled names {', '.join(map(short_repr, wrong))}; what differs in these "
-            "runs "
-            f"beside motion and intensity: {', '.join(differing) or 'nothing'}"
+            f"runs beside motion and intensity: {', '.join(differing) or 'nothing'}"
         )
         raise ComponentError(msg)
 
