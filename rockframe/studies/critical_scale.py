@@ -40,9 +40,7 @@ from rockframe.units import POSITIVE, QuantityLike, RatioLike, to_ratio
 
 _OWNER: Final = "critical_scale"
 MOST_RUNS: Final = 1_000_000
-_OUTCOMES: Final = {
-    False: Outcome.STANDS, True: Outcome.OVERTURNS, None: Outcome.UNDECIDED,
-}  # fmt: skip
+_OUTCOMES: Final = {False: Outcome.STANDS, True: Outcome.OVERTURNS, None: Outcome.UNDECIDED}
 
 
 @with_shared_arguments(ScaleArguments)

@@ -20,7 +20,7 @@ from rockframe.results.variables.studies import MOTION
 from rockframe.results.variables.variable import OSCILLATOR
 from rockframe.simulation.system import System
 from rockframe.studies.sweeps.axes import labels_in_unit
-from rockframe.studies.sweeps.case import store_of, unscaled_motions
+from rockframe.studies.sweeps.case import known_motions
 from rockframe.studies.sweeps.motions import (
     ABBREVIATIONS,
     SCALE,
@@ -280,8 +280,7 @@ def motions_of_runs(runs: xr.Dataset, value: object, *, owner: str) -> dict[str,
         msg = f"{owner}: found runs without the coordinate {MOTION!r}; expected it, as sweeps have"
         raise SchemaError(msg)
     used = set(runs[MOTION].to_numpy().astype(str).ravel().tolist())
-    names: list[str] = json.loads(runs.attrs["motion_names"])
-    unknown = sorted(used - set(names))
+    unknown = sorted(used - set(json.loads(runs.attrs["motion_names"])))
     if unknown:
         msg = (
             f"{owner}: the sweep had no motion {unknown[0]!r}; datasets that were put together "
@@ -289,10 +288,8 @@ def motions_of_runs(runs: xr.Dataset, value: object, *, owner: str) -> dict[str,
             "intensity as a DataArray"
         )
         raise StudyError(msg)
-    which = [name for name in names if name in used]
-    every = unscaled_motions(runs.attrs, which, value, store_of(runs), owner=owner)
-    motions = {name: motion for name, motion in every.items() if motion is not None}
-    if len(motions) < len(every):
+    motions = known_motions(runs, value, needed=True, owner=owner)
+    if len(motions) < len(used):
         msg = f"{owner}: the sweep has no motions of its own, of which there is an intensity"
         raise StudyError(msg)
     return motions

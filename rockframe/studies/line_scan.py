@@ -137,6 +137,10 @@ class Bracket:
         """The scale in its middle."""
         return 0.5 * (self.below + self.above)
 
+    def is_wide(self, width: float) -> bool:
+        """Whether it is wider than a share of its upper scale."""
+        return self.above - self.below > width * self.above
+
     def halves(self, verdict: float) -> Iterator["Bracket"]:
         """Return the part that remains by the verdict of its middle; both parts by a third one."""
         if verdict != self.before:
@@ -171,16 +175,8 @@ def bisect_brackets(
     remaining = list(brackets)
     completed = True
     for number in range(1, MAX_ROUNDS + 1):
-        wide = [
-            bracket
-            for bracket in remaining
-            if bracket.above - bracket.below > width * bracket.above
-        ]
-        done += [
-            bracket
-            for bracket in remaining
-            if bracket.above - bracket.below <= width * bracket.above
-        ]
+        wide = [bracket for bracket in remaining if bracket.is_wide(width)]
+        done += [bracket for bracket in remaining if not bracket.is_wide(width)]
         remaining = []
         if not wide:
             break

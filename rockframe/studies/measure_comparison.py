@@ -171,10 +171,9 @@ def _read_covariates(
 ) -> dict[str, xr.DataArray]:
     """Read what the response should not depend on: numbers of the motions by their names."""
     if isinstance(values, Mapping):
-        table = values
         return {
             str(name): _covariate_of_runs(runs, str(name), numbers)
-            for name, numbers in table.items()
+            for name, numbers in values.items()
         }
     covariates: dict[str, xr.DataArray] = {}
     for name in checked_list(values, owner=_OWNER, name="against", of="names"):
@@ -231,13 +230,12 @@ def _comparison_dataset(
         "cloud_overturned_count": [np.isinf(cloud.responses).sum() for cloud in clouds],
         "resting_count": [(cloud.responses == 0.0).sum() for cloud in clouds],
     }
+    names = {"measure": np.array(list(names_of_measures), dtype=object)}
     if covariates:
         tested = np.array([
             [_residual_trend(cloud, values) for values in covariates.values()] for cloud in clouds
         ])  # fmt: skip
         values |= {"sufficiency_slope": tested[..., 0], "sufficiency_p_value": tested[..., 1]}
-    names = {"measure": np.array(list(names_of_measures), dtype=object)}
-    if covariates:
         names["covariate"] = np.array(list(covariates), dtype=object)
     dataset = build_dataset(
         {name: np.array(column) for name, column in values.items()}, {}, over=("measure",),

@@ -21,7 +21,6 @@ from rockframe.studies.intensities import (
     Intensity,
     map_motions,
     measure_attributes,
-    motions_of_runs,
 )
 from rockframe.studies.line_axes import read_line_axes, unstack_cases
 from rockframe.studies.line_scan import (
@@ -275,9 +274,7 @@ def overturning_spectrum(
     verdicts = overturns(scan).transpose(CASE, MOTION, SCALE).to_numpy()
     capacities, flips = result.capacities(shape), result.flips(shape)
     capacity = capacities["capacity_scale"]
-    unit_intensity = map_motions(
-        scan, motions_of_runs(scan, named, owner=_OVERTURNING), measure.compute
-    )
+    unit_intensity = map_motions(scan, named, measure.compute)
     factors = capacity ** np.where(np.isinf(capacity), 1, SCALE_EXPONENTS[measure.name])
     values = {
         **capacities,

@@ -229,9 +229,8 @@ class Trials:
         ends = np.concatenate([logs, logs])
         is_upper = np.repeat([True, False], len(logs))
         weight = np.concatenate([exceeded, trials - exceeded]).astype(np.float64)
-        used = weight > 0.0
-        numbers = None if cluster is None else np.tile(cluster, 2)[used]
-        return cls(ends[used], ends[used], ~is_upper[used], is_upper[used], weight[used], numbers)
+        numbers = None if cluster is None else np.tile(cluster, 2)
+        return cls(ends, ends, ~is_upper, is_upper, weight, numbers).with_weights(weight)
 
     def with_weights(self, weight: Array) -> "Trials":
         """Return the trials that have a weight above zero, with that weight."""
