@@ -13,6 +13,7 @@ from rockframe.identification.measured import (
     OWNER,
     History,
     MeasuredPeaks,
+    Swings,
     check_below_overturning,
     read_history,
     read_peaks,
@@ -144,7 +145,7 @@ def fit_free_decay(
             f"({', '.join(unknowns)}) and their uncertainty; expected at least {len(unknowns) + 1}"
         )
         raise ComponentError(msg)
-    swings = swings_of(data) if isinstance(data, History) else None
+    swings = swings_of(data) if isinstance(data, History) else Swings(data)
     starts = start_values(system, trials, data, swings, fitted, settings)
     known = {str(name): starts[name].start for name in Circumstance if name not in fitted}
     prediction = Prediction(trials, unknowns, known, settings)
@@ -152,7 +153,7 @@ def fit_free_decay(
     if isinstance(data, MeasuredPeaks):
         fit = fit_peaks(prediction, data, chosen)
     else:
-        fit = fit_history(prediction, data, swings_of(data), chosen)
+        fit = fit_history(prediction, data, swings, chosen)
     return fit_dataset(
         prediction, data, fit, probability, accuracy if isinstance(accuracy, str) else "own"
     )

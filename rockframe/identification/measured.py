@@ -16,7 +16,6 @@ from rockframe.system.bodies import OverturningAngles
 from rockframe.units import ANGLE, TIME, Measure, angle_words, check_attached_unit, to_si
 
 OWNER: Final = "fit_free_decay"
-_EXAMPLE_UNITS: Final = {"rotation": "deg", "time": "s"}
 _HISTORY: Final = (
     "write measured=((times, 's'), (rotations, 'deg')), or give a DataArray over time with units, "
     "or a DataFrame with two columns such as 'time [s]' and 'rotation [deg]'"
@@ -166,7 +165,7 @@ def _read_array(value: object, measure: Measure, name: str) -> Array:
             if isinstance(unit, str):
                 check_attached_unit(values, unit, owner=OWNER, name=name)
     if not isinstance(unit, str):
-        example = _EXAMPLE_UNITS["time" if measure is TIME else "rotation"]
+        example = "s" if measure is TIME else "deg"
         msg = (
             f"{OWNER}: {name} needs an array with a unit such as {example}, got "
             f"{short_repr(value)}; write for example (values, {example!r})"
@@ -225,14 +224,14 @@ _MIN_SAMPLES: Final = 5
 
 @dataclass(frozen=True)
 class Swings:
-    """The swings of a measured history."""
+    """The swings of a measured history, or of measured peaks."""
 
     # the release and the peaks of all complete swings after it; the release has no time, since the
     # rotation is constant before it, or it precedes the first sample
     peaks: MeasuredPeaks
-    crossing: float  # time at which the rotation first passes through zero [s]
+    crossing: float = math.nan  # time at which the rotation first passes through zero [s]
     # median of the rotation from the first swing on, the reading of the gauge at rest [rad]
-    offset: float
+    offset: float = 0.0
 
 
 def swings_of(history: History) -> Swings:
