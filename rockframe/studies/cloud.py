@@ -14,7 +14,7 @@ from rockframe.results.schema import build_dataset, with_labels, with_variables
 from rockframe.results.variables.studies import MOTION
 from rockframe.results.variables.variable import unit_of, unit_suffix_of
 from rockframe.signals.arrays import AnyArray
-from rockframe.studies.cloud_fit import MIN_RUNS, NO_LINE, Cloud, curve_of_level
+from rockframe.studies.cloud_fit import MIN_RUNS, Cloud, curve_of_level
 from rockframe.studies.confidence import read_confidence
 from rockframe.studies.fragility.labelling import BOUND_SUFFIXES, with_stripes
 from rockframe.studies.fragility.trials import (
@@ -214,7 +214,7 @@ def _cloud_dataset(
     logs = np.linspace(cloud.logs.min(), cloud.logs.max(), _CURVE_POINTS)
     curves = [curve_of_level(cloud, level, logs, of_bounds, seed) for level in levels.values()]
     name, over = str(measure.name), {"limit_state": len(levels)}
-    line, logistic = cloud.regression or NO_LINE, cloud.overturning
+    line, logistic = cloud.regression, cloud.overturning
     dataset = build_dataset(
         {
             "regression_intercept": line.intercept,
