@@ -221,7 +221,7 @@ def critical_scale(
     if measure is None:
         return dataset
     dataset = dataset.assign({measure.name: measure.at_scale(critical)})
-    return dataset.assign_attrs(measure_attributes(measure.name, measure.period))
+    return dataset.assign_attrs(measure_attributes(measure))
 
 
 def _uplift_scale(system: System, plan: Plan) -> float:

@@ -102,12 +102,12 @@ def measure_words(name: str, period: Any) -> str:
     return f"{words} at {periods[0]:.6g} s"
 
 
-def measure_attributes(name: str, period: Periods) -> dict[str, Any]:
+def measure_attributes(measure: "Intensity | ScaledIntensity") -> dict[str, Any]:
     """Return the attributes in which a dataset records its measure."""
-    return {"intensity": name} | recorded_period(period)
+    return {"intensity": measure.name} | _recorded_period(measure.period)
 
 
-def recorded_period(period: Periods) -> dict[str, Any]:
+def _recorded_period(period: Periods) -> dict[str, Any]:
     """Return the attribute in which a dataset records period or periods of a measure."""
     if period is None:
         return {}
@@ -251,7 +251,7 @@ def period_attribute(
     named = [measure_name(measure) for measure in measures if not isinstance(measure, xr.DataArray)]
     if period is not None:
         several = AVERAGE if AVERAGE in named else SPECTRAL_ACCELERATION
-        return recorded_period(Intensity.read(several, period, owner=owner).period)
+        return _recorded_period(Intensity.read(several, period, owner=owner).period)
     if (
         runs is None
         or PERIOD_ATTRIBUTE not in runs.attrs

@@ -121,7 +121,7 @@ LineScales = list[tuple[int, float]]
 """Numbers of lines, each with a scale at which it is to be run."""
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, order=True)
 class Bracket:
     """Two scales of unlike verdicts, between which no run has a verdict."""
 
@@ -167,10 +167,7 @@ def bisect_brackets(
     *,
     width: float,
 ) -> tuple[list[Bracket], bool]:
-    """Halve brackets in rounds until they are narrow; also return whether this was completed.
-
-    `run_at` makes the runs of a named round; it returns their verdicts, and whether all were made.
-    """
+    """Halve brackets in named rounds until they are narrow; also return whether all were made."""
     done: list[Bracket] = []
     remaining = list(brackets)
     completed = True
@@ -196,10 +193,7 @@ def bisect_brackets(
                 remaining += bracket.halves(verdict)
         if not completed:
             break
-    ordered = sorted(
-        [*done, *remaining], key=lambda bracket: (bracket.verdict, bracket.line, bracket.below)
-    )
-    return ordered, completed
+    return sorted([*done, *remaining]), completed
 
 
 def bracket_arrays(

@@ -186,12 +186,11 @@ def fragility(
         raise SchemaError(msg)
     states = _read_states(runs, limits)
     measures = [measure_of_runs(runs, measure, period, motions, owner=_OWNER) for measure in listed]
-    if len({measure.name for measure in measures}) < len(measures):
-        msg = f"{_OWNER}: the two intensity measures are one, {measures[0].name}; give another"
+    names = [str(measure.name) for measure in measures]
+    if len(set(names)) < len(names):
+        msg = f"{_OWNER}: the two intensity measures are one, {names[0]}; give another"
         raise ComponentError(msg)
-    if ambiguous := [
-        str(measure.name) for measure in measures if measure.name in structures.groups
-    ]:
+    if ambiguous := [name for name in names if name in structures.groups]:
         msg = (
             f"{_OWNER}: the structures differ along {ambiguous[0]}, which is also the name of the "
             "intensity measure; give the intensity as a DataArray of another name"
