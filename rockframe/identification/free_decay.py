@@ -129,7 +129,10 @@ def fit_free_decay(
         value = "neither" if peaks is None else "both"
         msg = f"{OWNER}: give measured (a history) or peaks, got {value}"
         raise ComponentError(msg)
-    names = _read_names(parameters)
+    names = tuple(checked_list(parameters, owner=OWNER, name="parameters", of="names"))
+    if not names or len(set(names)) < len(names):
+        msg = f"{OWNER}: parameters must name one or more, each once, got {short_repr(parameters)}"
+        raise ComponentError(msg)
     probability = to_ratio(
         confidence, owner=OWNER, name="confidence", condition=_CONFIDENCE, example="0.95"
     )
@@ -174,14 +177,6 @@ def _check_swings(system: System) -> None:
             "a block that swings to both sides, without a wall, or before one with a stiffness"
         )
         raise ComponentError(msg)
-
-
-def _read_names(parameters: Sequence[str] | str) -> tuple[str, ...]:
-    names = tuple(checked_list(parameters, owner=OWNER, name="parameters", of="names"))
-    if names and len(set(names)) == len(names):
-        return names
-    msg = f"{OWNER}: parameters must name one or more, each once, got {short_repr(parameters)}"
-    raise ComponentError(msg)
 
 
 def _read_circumstances(

@@ -115,9 +115,12 @@ def check_below_overturning(measured: History | MeasuredPeaks, angles: Overturni
     beyond = np.flatnonzero(np.abs(measured.rotation) >= theta)
     if beyond.size:
         first = int(beyond[0])
+        datum = f"peak {first + 1}"
+        if isinstance(measured, History):
+            datum = f"the rotation measured at {measured.time[first]:.6g} s"
         angle, limit = (angle_words(float(values[first])) for values in (measured.rotation, theta))
         msg = (
-            f"{OWNER}: {_datum_words(measured, first)} is {angle}, not below the overturning angle "
+            f"{OWNER}: {datum} is {angle}, not below the overturning angle "
             f"{limit}; check the unit, and the size of the block"
         )
         raise ComponentError(msg)
@@ -206,12 +209,6 @@ def _times_and_rotations(times: object, rotations: object) -> tuple[Array, Array
         )
         raise ComponentError(msg)
     return time, rotation
-
-
-def _datum_words(measured: History | MeasuredPeaks, index: int) -> str:
-    if isinstance(measured, History):
-        return f"the rotation measured at {measured.time[index]:.6g} s"
-    return f"peak {index + 1}"
 
 
 _MIN_SWING: Final = 0.1

@@ -7,7 +7,7 @@ from typing import Any, Final, NamedTuple
 import numpy as np
 import xarray as xr
 
-from rockframe.arguments import checked_integer, checked_list
+from rockframe.arguments import checked_integer
 from rockframe.errors import StudyError
 from rockframe.results.outcome import overturns
 from rockframe.results.schema import build_dataset, with_labels, with_variables
@@ -138,8 +138,7 @@ def cloud_analysis(
     runs = check_runs(runs, owner=_OWNER)
     nominal = read_confidence(confidence, owner=_OWNER)
     seed = checked_integer(seed, owner=_OWNER, name="seed", lowest=0)
-    pooled_axes = checked_list(pooled, owner=_OWNER, name="pooled", of="names")
-    check_one_structure(runs, pooled_axes, [intensity], owner=_OWNER)
+    pooled_axes = check_one_structure(runs, pooled, [intensity], owner=_OWNER)
     measure = measure_of_runs(runs, intensity, period, motions, owner=_OWNER)
     values = scalar_of(runs, response, label, owner=_OWNER)
     requested = [

@@ -123,8 +123,7 @@ def compare_intensities(
         _measure_and_period(item)
         for item in checked_list(measures, owner=_OWNER, name="measures", of="measures")
     ]
-    pooled_axes = checked_list(pooled, owner=_OWNER, name="pooled", of="names")
-    check_one_structure(runs, pooled_axes, [given for given, _ in listed], owner=_OWNER)
+    check_one_structure(runs, pooled, [given for given, _ in listed], owner=_OWNER)
     for given, period in listed:
         measure = measure_of_runs(runs, given, period, motions, owner=_OWNER)
         attributes = period_attribute(runs, [given], period, owner=_OWNER)

@@ -15,6 +15,7 @@ import numpy as np
 import pandas as pd
 import xarray as xr
 
+from rockframe.arguments import checked_list
 from rockframe.errors import ComponentError, SchemaError, StudyError, short_repr
 from rockframe.results.variables.studies import CASE, MOTION
 from rockframe.signals.arrays import AnyArray, Array
@@ -88,9 +89,10 @@ def structures_of(
 
 
 def check_one_structure(
-    runs: xr.Dataset, pooled: Sequence[str], measures: Sequence[object], *, owner: str
-) -> None:
-    """Refuse runs of several structures, except those that are treated as one."""
+    runs: xr.Dataset, pooled: object, measures: Sequence[object], *, owner: str
+) -> list[str]:
+    """Refuse runs of several structures, except over the axes `pooled`, which are returned."""
+    pooled = checked_list(pooled, owner=owner, name="pooled", of="names")
     changed = _structural_axes(_changes_of_axes(runs), _own_measures(runs, measures))
     several = [
         name
@@ -108,6 +110,7 @@ def check_one_structure(
             f"of them for one, by pooled={tuple(names)}"
         )
         raise StudyError(msg)
+    return pooled
 
 
 def attributes_of_system(runs: xr.Dataset) -> dict[str, Any]:
@@ -271,11 +274,9 @@ def trials_of_runs(
     motions = len(np.unique(cluster))
     logs, verdict = np.log(columns[used]), verdict[used]
     if not by_motion:  # what is alike is counted
-        points, place = np.unique(logs, axis=0, return_inverse=True)
-        size = len(points)
-        over = np.bincount(place.ravel(), weights=verdict, minlength=size)
-        every = np.bincount(place.ravel(), minlength=size).astype(np.float64)
-        trials = Trials.from_verdicts(points, over.astype(np.float64), every)
+        points, place, every = np.unique(logs, axis=0, return_inverse=True, return_counts=True)
+        over = np.bincount(place.ravel(), weights=verdict)
+        trials = Trials.from_verdicts(points, over, every.astype(np.float64))
     else:
         trials = Trials.from_verdicts(logs, verdict, np.ones(len(verdict)), cluster)
     return StructureTrials(trials, runs, int((~used).sum()), motions)

@@ -131,7 +131,7 @@ def dataset_without_results(
     if CASE in sizes:
         around[CASE] = np.arange(sizes[CASE])
     if labels.histories is not None:
-        around[TIME[0]] = labels.histories.times
+        around[TIME[0]] = labels.histories.step * np.arange(labels.histories.count)
     if labels.points:
         around |= point_labels(labels.points)
     return build_dataset(around, attributes, title="Sweep of a rocking system")

@@ -54,11 +54,6 @@ class Histories:
     step: float  # between the times [s]
     count: int  # of the times
 
-    @property
-    def times(self) -> AnyArray:
-        """The times [s]."""
-        return np.arange(self.count, dtype=np.float64) * self.step
-
 
 @dataclass(frozen=True, eq=False)
 class SweepJob:
