@@ -19,6 +19,7 @@ from rockframe.studies.fragility.ordered import ordered_fits
 from rockframe.studies.fragility.trials import (
     StructureTrials,
     Trials,
+    attributes_of_system,
     flatten_like,
     motion_numbers,
     structures_of,
@@ -246,13 +247,8 @@ def fragility(
     dataset.attrs["verdict"] = (
         f"{fragility_sentences(dataset)}{_sliding_sentence(runs, of_capacities=of_capacities)}"
     )
-    # a system that the sweep changed is not that of the runs
-    kept_attributes = (
-        ("model",) if structures.coordinates or pooled_axes else ("model", "system_json")
-    )
-    return dataset.assign_attrs(
-        {name: runs.attrs[name] for name in kept_attributes if name in runs.attrs}
-    )
+    changed = bool(structures.coordinates or pooled_axes)
+    return dataset.assign_attrs(attributes_of_system(runs, changed=changed))
 
 
 def _fit_counts(

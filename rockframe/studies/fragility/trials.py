@@ -113,9 +113,10 @@ def check_one_structure(
     return pooled
 
 
-def attributes_of_system(runs: xr.Dataset) -> dict[str, Any]:
+def attributes_of_system(runs: xr.Dataset, *, changed: bool | None = None) -> dict[str, Any]:
     """Return the attributes that describe the system of runs, which a sweep may have changed."""
-    changed = any(name in runs.coords for name in _structural_axes(_changes_of_axes(runs), ()))
+    if changed is None:
+        changed = any(name in runs.coords for name in _structural_axes(_changes_of_axes(runs), ()))
     names = ("model",) if changed else ("model", "system_json")
     return {name: runs.attrs[name] for name in names if name in runs.attrs}
 
@@ -275,7 +276,7 @@ def trials_of_runs(
     logs, verdict = np.log(columns[used]), verdict[used]
     if not by_motion:  # what is alike is counted
         points, place, every = np.unique(logs, axis=0, return_inverse=True, return_counts=True)
-        over = np.bincount(place.ravel(), weights=verdict)
+        over = np.bincount(place.ravel(), weights=verdict).astype(np.float64)
         trials = Trials.from_verdicts(points, over, every.astype(np.float64))
     else:
         trials = Trials.from_verdicts(logs, verdict, np.ones(len(verdict)), cluster)

@@ -291,9 +291,8 @@ def unscaled_motions(
     available = {} if study is None else study.motions
     if stored is not None:
         available = stored.motions()
-    records = (
-        {} if value is None else {motion.sha256: motion for motion in named_motions(value).values()}
-    )
+    given = {} if value is None else named_motions(value)
+    records = {motion.sha256: motion for motion in given.values()}
     motions: dict[str, GroundMotion | None] = {}
     for name in names:
         description = described[name]
