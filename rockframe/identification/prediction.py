@@ -231,15 +231,13 @@ def start_values(
     release = Unknown(Circumstance.RELEASE_TIME, 0.0, period)
     if isinstance(measured, History):
         begin, end, span = float(measured.time[0]), float(measured.time[-1]), measured.span
-        values = {name: unknown.start for name, unknown in starts.items()}
-        swing = release_response(
-            trials.assembly(values), rotation.start, span, accuracy
-        ).first_crossing()
         release = Unknown(
             Circumstance.RELEASE_TIME, begin, period, begin - RELEASE_MARGIN * span, end
         )
         if Circumstance.RELEASE_TIME in fitted:
-            release = release.with_start(swings.crossing - swing)
+            system_at_start = trials.assembly({name: at.start for name, at in starts.items()})
+            motion = release_response(system_at_start, rotation.start, span, accuracy)
+            release = release.with_start(swings.crossing - motion.first_crossing())
     elif measured.time is not None:
         release = release.with_start(float(measured.time[0]))
     gauge = Unknown(Circumstance.GAUGE_OFFSET, offset, abs(first))
