@@ -93,7 +93,12 @@ def recommend(
             f"for {_plain_number(limit, 3)} % write {_plain_number(0.01 * limit, 3)}"
         )
         raise ComponentError(msg)
-    dataset = _check_comparison(dataset)
+    if not isinstance(cast("object", dataset), xr.Dataset):
+        msg = (
+            f"{_OWNER}: found {short_repr(dataset)}; expected a comparison of models, "
+            "as rockframe.tradeoff(system, motion) gives it"
+        )
+        raise SchemaError(msg)
     if not isinstance(cast("object", error), str) or error not in _ERRORS:
         known, near = " or ".join(map(repr, _ERRORS)), did_you_mean(error, _ERRORS)
         msg = f"{_OWNER}: error must be {known}, got {short_repr(error)}{near}"
@@ -143,16 +148,6 @@ def recommend(
     else:
         sentence = "No rung tried has the verdict of the scene itself."
     return Recommendation(model, accuracy, met, sentence)
-
-
-def _check_comparison(value: object) -> xr.Dataset:
-    if isinstance(value, xr.Dataset):
-        return value
-    msg = (
-        f"{_OWNER}: found {short_repr(value)}; expected a comparison of models, "
-        "as rockframe.tradeoff(system, motion) gives it"
-    )
-    raise SchemaError(msg)
 
 
 def _error_words(value: float, digits: int) -> str:

@@ -174,10 +174,7 @@ class Weights:
 
 
 def fit_history(
-    prediction: Prediction,
-    measured: History,
-    swings: Swings,
-    unknowns: Sequence[Unknown],
+    prediction: Prediction, measured: History, swings: Swings, unknowns: Sequence[Unknown]
 ) -> Solution:
     """Fit a history with the same weight for every sample."""
 

@@ -13,6 +13,7 @@ from rockframe.identification.measured import (
     OWNER,
     History,
     MeasuredPeaks,
+    Swings,
     check_below_overturning,
     read_history,
     read_peaks,
@@ -128,7 +129,10 @@ def fit_free_decay(
         value = "neither" if peaks is None else "both"
         msg = f"{OWNER}: give measured (a history) or peaks, got {value}"
         raise ComponentError(msg)
-    names = _read_names(parameters)
+    names = tuple(checked_list(parameters, owner=OWNER, name="parameters", of="names"))
+    if not names or len(set(names)) < len(names):
+        msg = f"{OWNER}: parameters must name one or more, each once, got {short_repr(parameters)}"
+        raise ComponentError(msg)
     probability = to_ratio(
         confidence, owner=OWNER, name="confidence", condition=_CONFIDENCE, example="0.95"
     )
@@ -144,7 +148,7 @@ def fit_free_decay(
             f"({', '.join(unknowns)}) and their uncertainty; expected at least {len(unknowns) + 1}"
         )
         raise ComponentError(msg)
-    swings = swings_of(data) if isinstance(data, History) else None
+    swings = swings_of(data) if isinstance(data, History) else Swings(data)
     starts = start_values(system, trials, data, swings, fitted, settings)
     known = {str(name): starts[name].start for name in Circumstance if name not in fitted}
     prediction = Prediction(trials, unknowns, known, settings)
@@ -152,7 +156,7 @@ def fit_free_decay(
     if isinstance(data, MeasuredPeaks):
         fit = fit_peaks(prediction, data, chosen)
     else:
-        fit = fit_history(prediction, data, swings_of(data), chosen)
+        fit = fit_history(prediction, data, swings, chosen)
     return fit_dataset(
         prediction, data, fit, probability, accuracy if isinstance(accuracy, str) else "own"
     )
@@ -173,14 +177,6 @@ def _check_swings(system: System) -> None:
             "a block that swings to both sides, without a wall, or before one with a stiffness"
         )
         raise ComponentError(msg)
-
-
-def _read_names(parameters: Sequence[str] | str) -> tuple[str, ...]:
-    names = tuple(checked_list(parameters, owner=OWNER, name="parameters", of="names"))
-    if names and len(set(names)) == len(names):
-        return names
-    msg = f"{OWNER}: parameters must name one or more, each once, got {short_repr(parameters)}"
-    raise ComponentError(msg)
 
 
 def _read_circumstances(

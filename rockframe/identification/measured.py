@@ -16,7 +16,6 @@ from rockframe.system.bodies import OverturningAngles
 from rockframe.units import ANGLE, TIME, Measure, angle_words, check_attached_unit, to_si
 
 OWNER: Final = "fit_free_decay"
-_EXAMPLE_UNITS: Final = {"rotation": "deg", "time": "s"}
 _HISTORY: Final = (
     "write measured=((times, 's'), (rotations, 'deg')), or give a DataArray over time with units, "
     "or a DataFrame with two columns such as 'time [s]' and 'rotation [deg]'"
@@ -116,9 +115,12 @@ def check_below_overturning(measured: History | MeasuredPeaks, angles: Overturni
     beyond = np.flatnonzero(np.abs(measured.rotation) >= theta)
     if beyond.size:
         first = int(beyond[0])
+        datum = f"peak {first + 1}"
+        if isinstance(measured, History):
+            datum = f"the rotation measured at {measured.time[first]:.6g} s"
         angle, limit = (angle_words(float(values[first])) for values in (measured.rotation, theta))
         msg = (
-            f"{OWNER}: {_datum_words(measured, first)} is {angle}, not below the overturning angle "
+            f"{OWNER}: {datum} is {angle}, not below the overturning angle "
             f"{limit}; check the unit, and the size of the block"
         )
         raise ComponentError(msg)
@@ -166,11 +168,10 @@ def _read_array(value: object, measure: Measure, name: str) -> Array:
             if isinstance(unit, str):
                 check_attached_unit(values, unit, owner=OWNER, name=name)
     if not isinstance(unit, str):
-        example = _EXAMPLE_UNITS["time" if measure is TIME else "rotation"]
+        example = "s" if measure is TIME else "deg"
         msg = (
             f"{OWNER}: {name} needs an array with a unit such as {example}, got "
-            f"{short_repr(value)}; "
-            f"write for example (values, {example!r})"
+            f"{short_repr(value)}; write for example (values, {example!r})"
         )
         raise UnitsError(msg)
     factor = to_si(f"1 {unit}", measure, owner=OWNER, name=name)
@@ -210,12 +211,6 @@ def _times_and_rotations(times: object, rotations: object) -> tuple[Array, Array
     return time, rotation
 
 
-def _datum_words(measured: History | MeasuredPeaks, index: int) -> str:
-    if isinstance(measured, History):
-        return f"the rotation measured at {measured.time[index]:.6g} s"
-    return f"peak {index + 1}"
-
-
 _MIN_SWING: Final = 0.1
 """Share of the first rotation that a swing must exceed: smaller ones may be noise."""
 _PARABOLA_SHARE: Final = 0.8
@@ -226,14 +221,14 @@ _MIN_SAMPLES: Final = 5
 
 @dataclass(frozen=True)
 class Swings:
-    """The swings of a measured history."""
+    """The swings of a measured history, or of measured peaks."""
 
     # the release and the peaks of all complete swings after it; the release has no time, since the
     # rotation is constant before it, or it precedes the first sample
     peaks: MeasuredPeaks
-    crossing: float  # time at which the rotation first passes through zero [s]
+    crossing: float = math.nan  # time at which the rotation first passes through zero [s]
     # median of the rotation from the first swing on, the reading of the gauge at rest [rad]
-    offset: float
+    offset: float = 0.0
 
 
 def swings_of(history: History) -> Swings:

@@ -199,22 +199,17 @@ def start_values(
     system: System,
     trials: TrialSystems,
     measured: History | MeasuredPeaks,
-    swings: Swings | None,
+    swings: Swings,
     fitted: Collection[Circumstance],
     accuracy: Accuracy,
 ) -> dict[str, Unknown]:
     """Return start values and bounds of all parameters and circumstances."""
-    peaks = None if swings is None else swings.peaks
-    if isinstance(measured, MeasuredPeaks):
-        peaks = measured
-    offset = 0.0
-    if swings is not None and Circumstance.GAUGE_OFFSET in fitted:
-        offset = swings.offset
-    first = float(measured.rotation[0] if peaks is None else peaks.rotation[0]) - offset
+    offset = swings.offset if Circumstance.GAUGE_OFFSET in fitted else 0.0
+    about_offset = swings.peaks.rotation - offset
+    first = float(about_offset[0])
     starts = {name: place.unknown(name) for name, place in trials.parameters.items()}
     angles, body = system.setting.overturning_angles, system.setting.body
-    if system.setting.settlement is None and peaks is not None and peaks.rotation.size > 1:
-        about_offset = peaks.rotation - offset
+    if system.setting.settlement is None and about_offset.size > 1:
         left, right = (
             math.hypot(arm, body.centre_height) / body.gyration_square_about(arm)
             for arm in (body.left, body.right)
@@ -236,15 +231,13 @@ def start_values(
     release = Unknown(Circumstance.RELEASE_TIME, 0.0, period)
     if isinstance(measured, History):
         begin, end, span = float(measured.time[0]), float(measured.time[-1]), measured.span
-        values = {name: unknown.start for name, unknown in starts.items()}
-        swing = release_response(
-            trials.assembly(values), rotation.start, span, accuracy
-        ).first_crossing()
         release = Unknown(
             Circumstance.RELEASE_TIME, begin, period, begin - RELEASE_MARGIN * span, end
         )
-        if swings is not None and Circumstance.RELEASE_TIME in fitted:
-            release = release.with_start(swings.crossing - swing)
+        if Circumstance.RELEASE_TIME in fitted:
+            system_at_start = trials.assembly({name: at.start for name, at in starts.items()})
+            motion = release_response(system_at_start, rotation.start, span, accuracy)
+            release = release.with_start(swings.crossing - motion.first_crossing())
     elif measured.time is not None:
         release = release.with_start(float(measured.time[0]))
     gauge = Unknown(Circumstance.GAUGE_OFFSET, offset, abs(first))

@@ -8,12 +8,7 @@ import numpy as np
 import xarray as xr
 
 from rockframe.errors import ModelWarning, warn
-from rockframe.identification.fitting import (
-    MAX_EVALUATIONS,
-    Solution,
-    Uncertainty,
-    uncertainty_of,
-)
+from rockframe.identification.fitting import MAX_EVALUATIONS, Solution, Uncertainty, uncertainty_of
 from rockframe.identification.measured import OWNER, History, MeasuredPeaks
 from rockframe.identification.prediction import Prediction
 from rockframe.identification.unknowns import Circumstance
@@ -155,41 +150,28 @@ def _measured_and_fitted(
     prediction: Prediction, measured: History | MeasuredPeaks, estimates: Array
 ) -> Mapping[str, Array | float]:
     """Return measured and fitted values with their residuals, by their names in the schema."""
+    of_times: dict[str, Array | float] = {}
     if isinstance(measured, History):
-        fitted = prediction.history(estimates, measured)
-        residual = measured.rotation - fitted
-        return {
-            "time": measured.time,
-            "measured_rotation": measured.rotation,
-            "fitted_rotation": fitted,
-            "rotation_residual": residual,
-            **_noise(residual),
-        }
-    times, fitted = prediction.peaks(estimates, measured)
+        kind, fitted = "rotation", prediction.history(estimates, measured)
+        of_times["time"] = measured.time
+    else:
+        kind, (times, fitted) = "peak_rotation", prediction.peaks(estimates, measured)
+        if measured.time is not None:
+            of_times = {
+                "measured_peak_time": measured.time,
+                "fitted_peak_time": times,
+                "peak_time_residual": measured.time - times,
+                "time_rms_residual": _rms(measured.time - times),
+            }
     residual = measured.rotation - fitted
-    values: dict[str, Array | float] = {
-        "measured_peak_rotation": measured.rotation,
-        "fitted_peak_rotation": fitted,
-        "peak_rotation_residual": residual,
-        **_noise(residual),
-    }
-    if measured.time is not None:
-        values |= {
-            "measured_peak_time": measured.time,
-            "fitted_peak_time": times,
-            "peak_time_residual": measured.time - times,
-            "time_rms_residual": _rms(measured.time - times),
-        }
-    return values
-
-
-def _noise(residual: Array) -> dict[str, float]:
-    """Return the root mean square of the residuals, and their autocorrelation."""
-    total = float(residual @ residual)
-    following = float(residual[1:] @ residual[:-1])
+    total, following = float(residual @ residual), float(residual[1:] @ residual[:-1])
     return {
+        f"measured_{kind}": measured.rotation,
+        f"fitted_{kind}": fitted,
+        f"{kind}_residual": residual,
         "rotation_rms_residual": _rms(residual),
         "residual_autocorrelation": following / total if total > 0.0 else 0.0,
+        **of_times,
     }
 
 

@@ -78,7 +78,13 @@ class TrialSystems:
         self.radius = system.parts.block_si.radius
         self.gravity = system.options.gravity
         known = dict(self._ratios(system))
-        inside = set(self._ratios_inside())
+        inside = {
+            f"{type(interface).__name__}.{name}"
+            for part in self._parts
+            if isinstance(part, Stack)
+            for interface in part.interfaces
+            for name, _ in _declared_ratios(interface)
+        }
         self.parameters = {name: _find_parameter(name, known, inside) for name in names}
 
     def _ratios(self, system: System) -> Iterator[tuple[str, PartParameter | None]]:
@@ -89,19 +95,9 @@ class TrialSystems:
                 value = part.to_dict().get(argument, usual.get(argument))
                 condition = declared.condition
                 bounds = (-math.inf, math.inf) if condition is None else condition.bounds
-                name = f"{type(part).__name__}.{argument}"
-                yield (
-                    name,
-                    None if value is None else PartParameter(index, argument, float(value), bounds),
-                )
-
-    def _ratios_inside(self) -> Iterator[str]:
-        """Return the dimensionless parameters of the interfaces of a stack."""
-        for part in self._parts:
-            for interface in part.interfaces if isinstance(part, Stack) else ():
-                yield from (
-                    f"{type(interface).__name__}.{name}" for name, _ in _declared_ratios(interface)
-                )
+                known = value is not None
+                parameter = PartParameter(index, argument, float(value), bounds) if known else None
+                yield f"{type(part).__name__}.{argument}", parameter
 
     def _parts_with(self, values: Mapping[str, float]) -> list[Component]:
         """Return the parts with these values of the parameters."""
@@ -138,8 +134,7 @@ def _find_parameter(
             return parameter
         msg = (
             f"{OWNER}: {short_repr(name)} cannot be fitted, since the part was given without it; "
-            "give "
-            f"{matches[0]} as a start value, instead of what stands for it"
+            f"give {matches[0]} as a start value, instead of what stands for it"
         )
         raise ComponentError(msg)
     choice = ", ".join(repr(full) for full in (matches or known))
@@ -147,9 +142,8 @@ def _find_parameter(
         fitted = f"of the parts of the system, which are {choice}" if known else "of other parts"
         msg = (
             f"{OWNER}: {short_repr(name)} is a parameter of an interface of the Stack; fitted are "
-            "those "
-            f"{fitted}. To find that of an interface, compare the measured rotation with runs of a "
-            "sweep over a function that returns the system"
+            f"those {fitted}. To find that of an interface, compare the measured rotation with "
+            "runs of a sweep over a function that returns the system"
         )
         raise ComponentError(msg)
     fault = "several parts have" if matches else "no part of the system has"

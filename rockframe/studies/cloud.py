@@ -7,14 +7,14 @@ from typing import Any, Final, NamedTuple
 import numpy as np
 import xarray as xr
 
-from rockframe.arguments import checked_integer, checked_list
+from rockframe.arguments import checked_integer
 from rockframe.errors import StudyError
 from rockframe.results.outcome import overturns
 from rockframe.results.schema import build_dataset, with_labels, with_variables
 from rockframe.results.variables.studies import MOTION
 from rockframe.results.variables.variable import unit_of, unit_suffix_of
 from rockframe.signals.arrays import AnyArray
-from rockframe.studies.cloud_fit import MIN_RUNS, NO_LINE, Cloud, curve_of_level
+from rockframe.studies.cloud_fit import MIN_RUNS, Cloud, curve_of_level
 from rockframe.studies.confidence import read_confidence
 from rockframe.studies.fragility.labelling import BOUND_SUFFIXES, with_stripes
 from rockframe.studies.fragility.trials import (
@@ -138,8 +138,7 @@ def cloud_analysis(
     runs = check_runs(runs, owner=_OWNER)
     nominal = read_confidence(confidence, owner=_OWNER)
     seed = checked_integer(seed, owner=_OWNER, name="seed", lowest=0)
-    pooled_axes = checked_list(pooled, owner=_OWNER, name="pooled", of="names")
-    check_one_structure(runs, pooled_axes, [intensity], owner=_OWNER)
+    pooled_axes = check_one_structure(runs, pooled, [intensity], owner=_OWNER)
     measure = measure_of_runs(runs, intensity, period, motions, owner=_OWNER)
     values = scalar_of(runs, response, label, owner=_OWNER)
     requested = [
@@ -214,7 +213,7 @@ def _cloud_dataset(
     logs = np.linspace(cloud.logs.min(), cloud.logs.max(), _CURVE_POINTS)
     curves = [curve_of_level(cloud, level, logs, of_bounds, seed) for level in levels.values()]
     name, over = str(measure.name), {"limit_state": len(levels)}
-    line, logistic = cloud.regression or NO_LINE, cloud.overturning
+    line, logistic = cloud.regression, cloud.overturning
     dataset = build_dataset(
         {
             "regression_intercept": line.intercept,

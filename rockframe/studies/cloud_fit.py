@@ -144,7 +144,7 @@ class Cloud:
 
     logs: Array  # of the intensity
     responses: Array  # infinite where the block overturned, zero where it stayed at rest
-    regression: Regression | None  # of the runs in between; None if these are too few
+    regression: Regression  # of the runs in between; `NO_LINE` if these are too few
     overturning: Logistic
     moving: Logistic  # of runs that did not overturn: whether anything moved
 
@@ -154,14 +154,9 @@ class Cloud:
         overturned, moved = np.isinf(responses), responses > 0.0
         between = moved & ~overturned
         enough = between.sum() >= MIN_RUNS and np.ptp(logs[between]) > SAME_INTENSITY
-        regression = Regression.fit(logs[between], np.log(responses[between])) if enough else None
-        return cls(
-            logs,
-            responses,
-            regression,
-            fit_logistic(logs, overturned),
-            fit_logistic(logs[~overturned], moved[~overturned]),
-        )
+        line = Regression.fit(logs[between], np.log(responses[between])) if enough else NO_LINE
+        moving = fit_logistic(logs[~overturned], moved[~overturned])
+        return cls(logs, responses, line, fit_logistic(logs, overturned), moving)
 
     @property
     def is_regressed(self) -> AnyArray:
@@ -170,7 +165,7 @@ class Cloud:
 
     def log_likelihoods(self) -> Array:
         """Return the logarithm of the likelihood of each run, :eq:`eq-cloud-likelihood`."""
-        if self.regression is None:
+        if self.regression is NO_LINE:
             return np.full(len(self.logs), np.nan)
         overturning = self.overturning.probability(self.logs)
         moving = self.moving.probability(self.logs)
@@ -190,7 +185,7 @@ class Cloud:
 
     def probabilities(self, logs: Array, level: float) -> Array:
         """Return the probability that a level is exceeded, :eq:`eq-cloud-fragility`."""
-        overturning, line = self.overturning.probability(logs), self.regression or NO_LINE
+        overturning, line = self.overturning.probability(logs), self.regression
         if math.isinf(level):
             return overturning
         coefficients = line.intercept, line.slope, line.dispersion
@@ -200,7 +195,7 @@ class Cloud:
     def draw_curves(self, logs: Array, level: float, rng: np.random.Generator, count: int) -> Array:
         """Draw fragility curves from the posterior; shape (count, intensities)."""
         overturning = self.overturning.draw_curves(logs, rng, count)
-        if self.regression is None or math.isinf(level):
+        if self.regression is NO_LINE or math.isinf(level):
             return overturning
         moving = self.moving.draw_curves(logs, rng, count)
         coefficients = [
@@ -257,7 +252,7 @@ def _status(cloud: Cloud, level: float) -> FragilityStatus:
         rises = cloud.overturning.status is not FragilityStatus.FITTED
         rises = rises or cloud.overturning.coefficients[1] > 0.0
         return cloud.overturning.status if rises else FragilityStatus.NOT_RISING
-    if cloud.regression is None:
+    if cloud.regression is NO_LINE:
         return FragilityStatus.NO_TRIALS
     parted = FragilityStatus.NOT_RISING in (cloud.overturning.status, cloud.moving.status)
     rises = cloud.regression.slope > 0.0 and not parted

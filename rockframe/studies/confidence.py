@@ -1,5 +1,6 @@
 """Probabilities as arguments, their normal scores, and exact confidence bounds of shares."""
 
+from functools import partial
 from typing import Final
 
 import numpy as np
@@ -20,12 +21,8 @@ def read_confidence(value: object, *, owner: str) -> float:
 def read_shares(value: object, name: str, *, owner: str) -> Array:
     """Read an argument that is several shares."""
     listed = checked_list(value, owner=owner, name=name, of="numbers")
-    return np.array(
-        [
-            to_ratio(share, owner=owner, name=name, condition=SHARE, example="0.5")
-            for share in listed
-        ]
-    )
+    read = partial(to_ratio, owner=owner, name=name, condition=SHARE, example="0.5")
+    return np.array([read(share) for share in listed])
 
 
 def normal_scores(probabilities: Array) -> Array:

@@ -40,9 +40,7 @@ from rockframe.units import POSITIVE, QuantityLike, RatioLike, to_ratio
 
 _OWNER: Final = "critical_scale"
 MOST_RUNS: Final = 1_000_000
-_OUTCOMES: Final = {
-    False: Outcome.STANDS, True: Outcome.OVERTURNS, None: Outcome.UNDECIDED,
-}  # fmt: skip
+_OUTCOMES: Final = {False: Outcome.STANDS, True: Outcome.OVERTURNS, None: Outcome.UNDECIDED}
 
 
 @with_shared_arguments(ScaleArguments)
@@ -223,7 +221,7 @@ def critical_scale(
     if measure is None:
         return dataset
     dataset = dataset.assign({measure.name: measure.at_scale(critical)})
-    return dataset.assign_attrs(measure_attributes(measure.name, measure.period))
+    return dataset.assign_attrs(measure_attributes(measure))
 
 
 def _uplift_scale(system: System, plan: Plan) -> float:

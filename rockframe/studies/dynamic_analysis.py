@@ -183,7 +183,7 @@ def incremental_dynamic_analysis(
         dataset = dataset.assign(
             {measure.name: intensity_of_runs(scan, measure, by_name, owner=_OWNER)}
         )
-        dataset.attrs |= measure_attributes(measure.name, measure.period)
+        dataset.attrs |= measure_attributes(measure)
     below, least = _overturned_at_least_scale(dataset), float(dataset[SCALE].min())
     if below.any():
         which = "motions" if below.ndim == 1 else "lines"

@@ -12,6 +12,7 @@ from rockframe.results.schema import build_dataset
 from rockframe.results.variables.studies import MOTION
 from rockframe.signals.arrays import Array
 from rockframe.studies.confidence import clopper_pearson, read_confidence, read_shares
+from rockframe.studies.fragility.labelling import BOUND_SUFFIXES
 from rockframe.studies.probability import SAMPLING_ATTRIBUTE
 from rockframe.suggestions import with_hints
 from rockframe.units import RatioLike
@@ -113,10 +114,7 @@ def ensemble_statistics(
         source="empirical distribution",
     )
     if "units" in values.attrs:
-        for variable in (
-            "ordered_value",
-            *(name for name in dataset if "quantile_value" in str(name)),
-        ):
+        for variable in ("ordered_value", *(f"quantile_value{end}" for end in BOUND_SUFFIXES)):
             dataset[variable].attrs["units"] = values.attrs["units"]
     return dataset
 

@@ -49,10 +49,7 @@ class ScaleScan:
 
     @property
     def largest_gap(self) -> float:
-        """Largest distance between neighbouring scales with a verdict; NaN if fewer than two [1].
-
-        Pairs of flips closer together than this gap may be missed.
-        """
+        """The widest gap between neighbouring scales with a verdict; NaN if fewer than two [1]."""
         decided = [scale for scale, run in self.runs.items() if run.overturned is not None]
         return max((far - near for near, far in pairwise(decided)), default=math.nan)
 

@@ -27,7 +27,6 @@ _OWNER: Final = "fractile_curves"
 _CURVE_POINTS: Final = 201
 """Number of intensities, and of levels of the response, of the curves by default."""
 _LEVEL_DIM: Final = "response_level"
-_TITLE: Final = "Fractile curves of scaled motions"
 
 
 @with_hints()
@@ -122,7 +121,8 @@ def fractile_curves(
     responses = np.stack([curve.response_at(intensities) for curve in curves])
     reached = np.stack([curve.first_intensities(requested) for curve in curves])
     name = str(measure.name)
-    dataset = build_dataset({}, {}, title=_TITLE, source="runs of scaled motions")
+    title = "Fractile curves of scaled motions"
+    dataset = build_dataset({}, {}, title=title, source="runs of scaled motions")
     for variable, value, over in (
         ("motion_response", responses, (MOTION, name)),
         ("response_fractile", fractiles_of(responses, shares), ("quantile", name)),

@@ -261,18 +261,16 @@ def _rate_of_state(fragility: xr.Dataset, curve: HazardCurve, measure: str) -> d
         sizes = {"rate_share": _BINS, "quantile_intensity": len(_QUANTILES)}
         none = {name: np.full(size, np.nan) for name, size in sizes.items()}
         return dict.fromkeys(names, np.nan) | none
-    edges, parts = contributions(fragility, curve, measure)
+    edges, parts = _contributions(fragility, curve)
     rate = float(parts.sum())
     with np.errstate(invalid="ignore"):  # a rate of zero has no shares
         cumulative = np.concatenate([[0.0], np.cumsum(parts)]) / rate
     logs = np.log(edges)
     bounds = (
-        _rate_of_curve(fragility[f"exceedance_probability_{end}_bound"], fragility[measure], curve)
+        _rate_of_curve(fragility[f"exceedance_probability_{end}_bound"], curve)
         for end in ("lower", "upper")
     )
-    outside = (
-        float(contributions(fragility, part, measure)[1].sum()) for part in curve.extrapolations()
-    )
+    outside = (float(_contributions(fragility, end)[1].sum()) for end in curve.extrapolations())
     least, most = np.interp(np.log(_range_of_trials(fragility, measure)), logs, cumulative)
     numbers = rate, *bounds, *outside, 1.0 - (most - least)
     return dict(zip(names, numbers, strict=True)) | {
@@ -300,15 +298,13 @@ def _bin_edges(curve: HazardCurve) -> Array:
     return np.geomspace(curve.intensities[0], curve.intensities[-1], _BINS + 1)
 
 
-def contributions(fragility: xr.Dataset, curve: HazardCurve, measure: str) -> tuple[Array, Array]:
+def _contributions(fragility: xr.Dataset, curve: HazardCurve) -> tuple[Array, Array]:
     """Return intensities, and the contributions to the rate between them [1/year]."""
     edges, rates, slopes = _subdivided(curve)
     if "median_intensity" in fragility and "logistic_slope" not in fragility:
         median, spread = float(fragility["median_intensity"]), float(fragility["dispersion"])
         return edges, lognormal_rates(median, spread, edges, rates, slopes)
-    return edges, _integrated(
-        _interpolator(fragility["exceedance_probability"], fragility[measure]), edges, rates, slopes
-    )
+    return edges, _integrated(fragility["exceedance_probability"], edges, rates, slopes)
 
 
 def lognormal_rates(
@@ -346,40 +342,34 @@ def _subdivided(curve: HazardCurve) -> tuple[Array, Array, Array]:
     return np.exp(fine), rates, np.repeat(curve.slopes(), counts)
 
 
-def _integrated(
-    probability: Callable[[Array], Array], edges: Array, rates: Array, slopes: Array
-) -> Array:
-    """Integrate any probability over the parts of the hazard."""
+def _integrated(curve: xr.DataArray, edges: Array, rates: Array, slopes: Array) -> Array:
+    """Integrate any probability, given by a curve, over the parts of the hazard."""
     nodes, weights = leggauss(_GAUSS_POINTS)
     logs = np.log(edges)
     half = 0.5 * np.diff(logs)
     at = (0.5 * (logs[1:] + logs[:-1]))[:, None] + half[:, None] * nodes
     density = (slopes * rates[:-1])[:, None] * np.exp(-slopes[:, None] * (at - logs[:-1, None]))
-    return half * ((probability(at) * density) @ weights)
+    return half * ((_interpolated(curve, at) * density) @ weights)
 
 
-def _interpolator(curve: xr.DataArray, along: xr.DataArray) -> Callable[[Array], Array]:
-    """Return the probability by log intensity: linear in normal scores, extrapolated."""
+def _interpolated(curve: xr.DataArray, at: Array) -> Array:
+    """Return the probability at log intensities: linear in normal scores, extrapolated."""
     from scipy.special import ndtr
 
     with np.errstate(invalid="ignore"):
         eta = normal_scores(curve.to_numpy())
-    logs = np.log(along.to_numpy())
+    logs = np.log(curve[curve.dims[0]].to_numpy())
     slope = [(eta[k] - eta[k - 1]) / (logs[k] - logs[k - 1]) for k in (1, len(logs) - 1)]
-
-    def at(value: Array) -> Array:
-        score = np.interp(value, logs, eta)
-        score = np.where(value < logs[0], eta[0] + max(slope[0], 0.0) * (value - logs[0]), score)
-        score = np.where(value > logs[-1], eta[-1] + max(slope[1], 0.0) * (value - logs[-1]), score)
-        return ndtr(score)
-
-    return at
+    score = np.interp(at, logs, eta)
+    score = np.where(at < logs[0], eta[0] + max(slope[0], 0.0) * (at - logs[0]), score)
+    score = np.where(at > logs[-1], eta[-1] + max(slope[1], 0.0) * (at - logs[-1]), score)
+    return ndtr(score)
 
 
-def _rate_of_curve(probability: xr.DataArray, along: xr.DataArray, curve: HazardCurve) -> float:
+def _rate_of_curve(probability: xr.DataArray, curve: HazardCurve) -> float:
     if np.isnan(probability.to_numpy()).any():
         return math.nan
-    return float(_integrated(_interpolator(probability, along), *_subdivided(curve)).sum())
+    return float(_integrated(probability, *_subdivided(curve)).sum())
 
 
 def _warn_beyond_curve(dataset: xr.Dataset, curve: HazardCurve) -> None:

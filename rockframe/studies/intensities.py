@@ -20,7 +20,7 @@ from rockframe.results.variables.studies import MOTION
 from rockframe.results.variables.variable import OSCILLATOR
 from rockframe.simulation.system import System
 from rockframe.studies.sweeps.axes import labels_in_unit
-from rockframe.studies.sweeps.case import store_of, unscaled_motions
+from rockframe.studies.sweeps.case import known_motions
 from rockframe.studies.sweeps.motions import (
     ABBREVIATIONS,
     SCALE,
@@ -102,12 +102,12 @@ def measure_words(name: str, period: Any) -> str:
     return f"{words} at {periods[0]:.6g} s"
 
 
-def measure_attributes(name: str, period: Periods) -> dict[str, Any]:
+def measure_attributes(measure: "Intensity | ScaledIntensity") -> dict[str, Any]:
     """Return the attributes in which a dataset records its measure."""
-    return {"intensity": name} | recorded_period(period)
+    return {"intensity": measure.name} | _recorded_period(measure.period)
 
 
-def recorded_period(period: Periods) -> dict[str, Any]:
+def _recorded_period(period: Periods) -> dict[str, Any]:
     """Return the attribute in which a dataset records period or periods of a measure."""
     if period is None:
         return {}
@@ -251,7 +251,7 @@ def period_attribute(
     named = [measure_name(measure) for measure in measures if not isinstance(measure, xr.DataArray)]
     if period is not None:
         several = AVERAGE if AVERAGE in named else SPECTRAL_ACCELERATION
-        return recorded_period(Intensity.read(several, period, owner=owner).period)
+        return _recorded_period(Intensity.read(several, period, owner=owner).period)
     if (
         runs is None
         or PERIOD_ATTRIBUTE not in runs.attrs
@@ -280,8 +280,7 @@ def motions_of_runs(runs: xr.Dataset, value: object, *, owner: str) -> dict[str,
         msg = f"{owner}: found runs without the coordinate {MOTION!r}; expected it, as sweeps have"
         raise SchemaError(msg)
     used = set(runs[MOTION].to_numpy().astype(str).ravel().tolist())
-    names: list[str] = json.loads(runs.attrs["motion_names"])
-    unknown = sorted(used - set(names))
+    unknown = sorted(used - set(json.loads(runs.attrs["motion_names"])))
     if unknown:
         msg = (
             f"{owner}: the sweep had no motion {unknown[0]!r}; datasets that were put together "
@@ -289,10 +288,8 @@ def motions_of_runs(runs: xr.Dataset, value: object, *, owner: str) -> dict[str,
             "intensity as a DataArray"
         )
         raise StudyError(msg)
-    which = [name for name in names if name in used]
-    every = unscaled_motions(runs.attrs, which, value, store_of(runs), owner=owner)
-    motions = {name: motion for name, motion in every.items() if motion is not None}
-    if len(motions) < len(every):
+    motions = known_motions(runs, value, needed=True, owner=owner)
+    if len(motions) < len(used):
         msg = f"{owner}: the sweep has no motions of its own, of which there is an intensity"
         raise StudyError(msg)
     return motions

@@ -121,7 +121,7 @@ LineScales = list[tuple[int, float]]
 """Numbers of lines, each with a scale at which it is to be run."""
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, order=True)
 class Bracket:
     """Two scales of unlike verdicts, between which no run has a verdict."""
 
@@ -136,6 +136,10 @@ class Bracket:
     def middle(self) -> float:
         """The scale in its middle."""
         return 0.5 * (self.below + self.above)
+
+    def is_wide(self, width: float) -> bool:
+        """Whether it is wider than a share of its upper scale."""
+        return self.above - self.below > width * self.above
 
     def halves(self, verdict: float) -> Iterator["Bracket"]:
         """Return the part that remains by the verdict of its middle; both parts by a third one."""
@@ -163,24 +167,13 @@ def bisect_brackets(
     *,
     width: float,
 ) -> tuple[list[Bracket], bool]:
-    """Halve brackets in rounds until they are narrow; also return whether this was completed.
-
-    `run_at` makes the runs of a named round; it returns their verdicts, and whether all were made.
-    """
+    """Halve brackets in named rounds until they are narrow; also return whether all were made."""
     done: list[Bracket] = []
     remaining = list(brackets)
     completed = True
     for number in range(1, MAX_ROUNDS + 1):
-        wide = [
-            bracket
-            for bracket in remaining
-            if bracket.above - bracket.below > width * bracket.above
-        ]
-        done += [
-            bracket
-            for bracket in remaining
-            if bracket.above - bracket.below <= width * bracket.above
-        ]
+        wide = [bracket for bracket in remaining if bracket.is_wide(width)]
+        done += [bracket for bracket in remaining if not bracket.is_wide(width)]
         remaining = []
         if not wide:
             break
@@ -200,10 +193,7 @@ def bisect_brackets(
                 remaining += bracket.halves(verdict)
         if not completed:
             break
-    ordered = sorted(
-        [*done, *remaining], key=lambda bracket: (bracket.verdict, bracket.line, bracket.below)
-    )
-    return ordered, completed
+    return sorted([*done, *remaining]), completed
 
 
 def bracket_arrays(

@@ -12,9 +12,9 @@ from rockframe.arguments import checked_list
 from rockframe.errors import ComponentError, StudyError, short_repr
 from rockframe.results.schema import build_dataset, with_variables
 from rockframe.results.variables.studies import MOTION
-from rockframe.signals.arrays import AnyArray, Array
-from rockframe.studies.cloud import fit_cloud
-from rockframe.studies.cloud_fit import Cloud
+from rockframe.signals.arrays import Array
+from rockframe.studies.cloud import CloudFit, fit_cloud
+from rockframe.studies.cloud_fit import NO_LINE, Cloud
 from rockframe.studies.fragility.trials import check_one_structure, flatten_like
 from rockframe.studies.intensities import (
     PERIOD_ATTRIBUTE,
@@ -116,20 +116,20 @@ def compare_intensities(
     """
     runs = check_runs(runs, owner=_OWNER)
     values = scalar_of(runs, response, label, owner=_OWNER)
-    named, clouds, included_runs = list[str](), list[Cloud](), list[AnyArray]()
+    named, fits = list[str](), list[CloudFit]()
     if isinstance(measures, xr.DataArray):
         measures = [measures]
     listed = [
         _measure_and_period(item)
         for item in checked_list(measures, owner=_OWNER, name="measures", of="measures")
     ]
-    pooled_axes = checked_list(pooled, owner=_OWNER, name="pooled", of="names")
-    check_one_structure(runs, pooled_axes, [given for given, _ in listed], owner=_OWNER)
+    check_one_structure(runs, pooled, [given for given, _ in listed], owner=_OWNER)
     for given, period in listed:
         measure = measure_of_runs(runs, given, period, motions, owner=_OWNER)
         attributes = period_attribute(runs, [given], period, owner=_OWNER)
-        cloud, included, _ = fit_cloud(runs, measure, values, least=least, owner=_OWNER)
-        if cloud.regression is None:
+        fits.append(fit_cloud(runs, measure, values, least=least, owner=_OWNER))
+        cloud = fits[-1].cloud
+        if cloud.regression is NO_LINE:
             msg = (
                 f"{_OWNER}: {cloud.is_regressed.sum()} of {len(cloud.responses)} runs have a "
                 f"response and did not overturn, too few for a line over {measure.name}; give "
@@ -137,21 +137,17 @@ def compare_intensities(
             )
             raise StudyError(msg)
         named.append(measure_words(str(measure.name), attributes.get(PERIOD_ATTRIBUTE)))
-        clouds.append(cloud)
-        included_runs.append(included)
-    if not clouds or any(
-        not np.array_equal(included_runs[0], included) for included in included_runs
-    ):
+    if not fits or any(not np.array_equal(fits[0].included, fit.included) for fit in fits):
         msg = f"{_OWNER}: measures must be one or more, all known of the same runs, got {named}"
         raise ComponentError(msg)
     if len(set(named)) < len(named):
         msg = f"{_OWNER}: measures are named twice: {', '.join(named)}"
         raise ComponentError(msg)
     covariates = {
-        name: flatten_like(array, runs["status"]).astype(np.float64)[included_runs[0]]
+        name: flatten_like(array, runs["status"]).astype(np.float64)[fits[0].included]
         for name, array in _read_covariates(runs, against).items()
     }
-    dataset = _comparison_dataset(named, clouds, covariates)
+    dataset = _comparison_dataset(named, [fit.cloud for fit in fits], covariates)
     words = response if label is None else f"{response} {label}"
     return dataset.assign_attrs(response=words, verdict=_sentence(dataset))
 
@@ -171,10 +167,9 @@ def _read_covariates(
 ) -> dict[str, xr.DataArray]:
     """Read what the response should not depend on: numbers of the motions by their names."""
     if isinstance(values, Mapping):
-        table = values
         return {
             str(name): _covariate_of_runs(runs, str(name), numbers)
-            for name, numbers in table.items()
+            for name, numbers in values.items()
         }
     covariates: dict[str, xr.DataArray] = {}
     for name in checked_list(values, owner=_OWNER, name="against", of="names"):
@@ -214,7 +209,7 @@ def _comparison_dataset(
     names_of_measures: Sequence[str], clouds: Sequence[Cloud], covariates: Mapping[str, Array]
 ) -> xr.Dataset:
     """Return a dataset of the results of all measures."""
-    lines = [cloud.regression for cloud in clouds if cloud.regression is not None]
+    lines = [cloud.regression for cloud in clouds]
     log_likelihoods = np.stack([cloud.log_likelihoods() for cloud in clouds])
     information = (log_likelihoods - log_likelihoods[0]) / math.log(2.0)
     count = log_likelihoods.shape[1]
@@ -231,13 +226,12 @@ def _comparison_dataset(
         "cloud_overturned_count": [np.isinf(cloud.responses).sum() for cloud in clouds],
         "resting_count": [(cloud.responses == 0.0).sum() for cloud in clouds],
     }
+    names = {"measure": np.array(list(names_of_measures), dtype=object)}
     if covariates:
         tested = np.array([
             [_residual_trend(cloud, values) for values in covariates.values()] for cloud in clouds
         ])  # fmt: skip
         values |= {"sufficiency_slope": tested[..., 0], "sufficiency_p_value": tested[..., 1]}
-    names = {"measure": np.array(list(names_of_measures), dtype=object)}
-    if covariates:
         names["covariate"] = np.array(list(covariates), dtype=object)
     dataset = build_dataset(
         {name: np.array(column) for name, column in values.items()}, {}, over=("measure",),
@@ -252,7 +246,7 @@ def _residual_trend(cloud: Cloud, covariate: Array) -> tuple[float, float]:
 
     values = covariate[cloud.is_regressed]
     known = np.isfinite(values)
-    if cloud.regression is None or known.sum() < 3 or np.ptp(values[known]) == 0.0:
+    if known.sum() < 3 or np.ptp(values[known]) == 0.0:
         return math.nan, math.nan
     trend: Any = linregress(values[known], cloud.regression.residuals[known])
     return float(trend.slope), float(trend.pvalue)

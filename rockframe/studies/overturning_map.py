@@ -17,13 +17,7 @@ from rockframe.shared_arguments import with_shared_arguments
 from rockframe.signals.arrays import Array
 from rockframe.signals.motion import absolute_peak
 from rockframe.simulation.system import System, check_system
-from rockframe.studies.line_scan import (
-    SCAN_SOURCE,
-    VERDICT_DIM,
-    LineScan,
-    read_sorted,
-    read_width,
-)
+from rockframe.studies.line_scan import SCAN_SOURCE, VERDICT_DIM, LineScan, read_sorted, read_width
 from rockframe.studies.sweeps.arguments import SweepArguments
 from rockframe.studies.sweeps.motions import SCALE
 from rockframe.system.options import Overturning

@@ -396,21 +396,16 @@ def _with_probability(
         columns[MOTION] = runs[MOTION].to_numpy()[known].astype(str)
     sensitivities = rank_parameters(columns, verdict[known])
     share = falls / count if count else np.nan
+    indices, distances, p_values = np.transpose([*sensitivities.values()])
     added = {
         "overturning_probability": share,
         "overturning_probability_lower_bound": lower,
         "overturning_probability_upper_bound": upper,
         "verdict_count": count,
         "parameter": np.array(list(sensitivities), dtype=object),
-        "first_order_index": np.array(
-            [sensitivity.first_order for sensitivity in sensitivities.values()]
-        ),
-        "verdict_distance": np.array(
-            [sensitivity.distribution_distance for sensitivity in sensitivities.values()]
-        ),
-        "chance_probability": np.array(
-            [sensitivity.p_value for sensitivity in sensitivities.values()]
-        ),
+        "first_order_index": indices,
+        "verdict_distance": distances,
+        "chance_probability": p_values,
     }
     strongest = next(iter(sensitivities), "")
     text = f"Overturns with probability {share:.3g}, from {float(lower):.3g} to {float(upper):.3g}"

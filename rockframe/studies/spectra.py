@@ -21,7 +21,6 @@ from rockframe.studies.intensities import (
     Intensity,
     map_motions,
     measure_attributes,
-    motions_of_runs,
 )
 from rockframe.studies.line_axes import read_line_axes, unstack_cases
 from rockframe.studies.line_scan import (
@@ -46,10 +45,7 @@ _NO_ECCENTRICITY: Final = 1e-9
 
 
 class BlockSizes:
-    """A system with blocks of other sizes.
-
-    Its attribute ``system`` is the given system, with the block defined by its shape factor.
-    """
+    """A system, whose block is defined by its shape factor, with blocks of other sizes."""
 
     def __init__(
         self, system: System, periods: Any, slenderness: Any, axes: object = None, *, owner: str
@@ -65,9 +61,7 @@ class BlockSizes:
         radius = scale * (0.5 * periods / math.pi) ** 2
         angle = np.arctan(1.0 / slenderness)
         # in rows of a table: slenderness by slenderness
-        width, height = (
-            (2.0 * of_angle(angle)[:, None] * radius).ravel() for of_angle in (np.sin, np.cos)
-        )
+        width, height = (np.outer(2.0 * of(angle), radius).ravel() for of in (np.sin, np.cos))
         scene = scene_of(self.system)
         arguments = signature(overturning_spectrum).parameters
         # a wall has a height, too
@@ -275,9 +269,7 @@ def overturning_spectrum(
     verdicts = overturns(scan).transpose(CASE, MOTION, SCALE).to_numpy()
     capacities, flips = result.capacities(shape), result.flips(shape)
     capacity = capacities["capacity_scale"]
-    unit_intensity = map_motions(
-        scan, motions_of_runs(scan, named, owner=_OVERTURNING), measure.compute
-    )
+    unit_intensity = map_motions(scan, named, measure.compute)
     factors = capacity ** np.where(np.isinf(capacity), 1, SCALE_EXPONENTS[measure.name])
     values = {
         **capacities,
@@ -291,7 +283,7 @@ def overturning_spectrum(
     return sizes.unstack(dataset).assign_attrs(
         title="Overturning spectrum",
         source=SCAN_SOURCE,
-        **measure_attributes(measure.name, measure.period),
+        **measure_attributes(measure),
         capacity=CAPACITY_DEFINITION,
         resolution=finest,
         bracket_width=width,

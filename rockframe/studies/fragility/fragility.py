@@ -19,6 +19,7 @@ from rockframe.studies.fragility.ordered import ordered_fits
 from rockframe.studies.fragility.trials import (
     StructureTrials,
     Trials,
+    attributes_of_system,
     flatten_like,
     motion_numbers,
     structures_of,
@@ -26,12 +27,7 @@ from rockframe.studies.fragility.trials import (
     trials_of_runs,
 )
 from rockframe.studies.fragility.words import POOLED_ATTRIBUTE, fragility_sentences
-from rockframe.studies.intensities import (
-    Intensity,
-    PeriodLike,
-    measure_of_runs,
-    period_attribute,
-)
+from rockframe.studies.intensities import Intensity, PeriodLike, measure_of_runs, period_attribute
 from rockframe.studies.limit_states import (
     LimitState,
     check_runs,
@@ -191,12 +187,11 @@ def fragility(
         raise SchemaError(msg)
     states = _read_states(runs, limits)
     measures = [measure_of_runs(runs, measure, period, motions, owner=_OWNER) for measure in listed]
-    if len({measure.name for measure in measures}) < len(measures):
-        msg = f"{_OWNER}: the two intensity measures are one, {measures[0].name}; give another"
+    names = [str(measure.name) for measure in measures]
+    if len(set(names)) < len(names):
+        msg = f"{_OWNER}: the two intensity measures are one, {names[0]}; give another"
         raise ComponentError(msg)
-    if ambiguous := [
-        str(measure.name) for measure in measures if measure.name in structures.groups
-    ]:
+    if ambiguous := [name for name in names if name in structures.groups]:
         msg = (
             f"{_OWNER}: the structures differ along {ambiguous[0]}, which is also the name of the "
             "intensity measure; give the intensity as a DataArray of another name"
@@ -252,13 +247,8 @@ def fragility(
     dataset.attrs["verdict"] = (
         f"{fragility_sentences(dataset)}{_sliding_sentence(runs, of_capacities=of_capacities)}"
     )
-    # a system that the sweep changed is not that of the runs
-    kept_attributes = (
-        ("model",) if structures.coordinates or pooled_axes else ("model", "system_json")
-    )
-    return dataset.assign_attrs(
-        {name: runs.attrs[name] for name in kept_attributes if name in runs.attrs}
-    )
+    changed = bool(structures.coordinates or pooled_axes)
+    return dataset.assign_attrs(attributes_of_system(runs, changed=changed))
 
 
 def _fit_counts(

@@ -15,6 +15,7 @@ import numpy as np
 import pandas as pd
 import xarray as xr
 
+from rockframe.arguments import checked_list
 from rockframe.errors import ComponentError, SchemaError, StudyError, short_repr
 from rockframe.results.variables.studies import CASE, MOTION
 from rockframe.signals.arrays import AnyArray, Array
@@ -88,9 +89,10 @@ def structures_of(
 
 
 def check_one_structure(
-    runs: xr.Dataset, pooled: Sequence[str], measures: Sequence[object], *, owner: str
-) -> None:
-    """Refuse runs of several structures, except those that are treated as one."""
+    runs: xr.Dataset, pooled: object, measures: Sequence[object], *, owner: str
+) -> list[str]:
+    """Refuse runs of several structures, except over the axes `pooled`, which are returned."""
+    pooled = checked_list(pooled, owner=owner, name="pooled", of="names")
     changed = _structural_axes(_changes_of_axes(runs), _own_measures(runs, measures))
     several = [
         name
@@ -108,11 +110,13 @@ def check_one_structure(
             f"of them for one, by pooled={tuple(names)}"
         )
         raise StudyError(msg)
+    return pooled
 
 
-def attributes_of_system(runs: xr.Dataset) -> dict[str, Any]:
+def attributes_of_system(runs: xr.Dataset, *, changed: bool | None = None) -> dict[str, Any]:
     """Return the attributes that describe the system of runs, which a sweep may have changed."""
-    changed = any(name in runs.coords for name in _structural_axes(_changes_of_axes(runs), ()))
+    if changed is None:
+        changed = any(name in runs.coords for name in _structural_axes(_changes_of_axes(runs), ()))
     names = ("model",) if changed else ("model", "system_json")
     return {name: runs.attrs[name] for name in names if name in runs.attrs}
 
@@ -125,8 +129,7 @@ def _check_pooled(
     if wrong:
         msg = (
             f"{owner}: pooled names {', '.join(map(short_repr, wrong))}; what differs in these "
-            "runs "
-            f"beside motion and intensity: {', '.join(differing) or 'nothing'}"
+            f"runs beside motion and intensity: {', '.join(differing) or 'nothing'}"
         )
         raise ComponentError(msg)
 
@@ -230,9 +233,8 @@ class Trials:
         ends = np.concatenate([logs, logs])
         is_upper = np.repeat([True, False], len(logs))
         weight = np.concatenate([exceeded, trials - exceeded]).astype(np.float64)
-        used = weight > 0.0
-        numbers = None if cluster is None else np.tile(cluster, 2)[used]
-        return cls(ends[used], ends[used], ~is_upper[used], is_upper[used], weight[used], numbers)
+        numbers = None if cluster is None else np.tile(cluster, 2)
+        return cls(ends, ends, ~is_upper, is_upper, weight, numbers).with_weights(weight)
 
     def with_weights(self, weight: Array) -> "Trials":
         """Return the trials that have a weight above zero, with that weight."""
@@ -273,11 +275,9 @@ def trials_of_runs(
     motions = len(np.unique(cluster))
     logs, verdict = np.log(columns[used]), verdict[used]
     if not by_motion:  # what is alike is counted
-        points, place = np.unique(logs, axis=0, return_inverse=True)
-        size = len(points)
-        over = np.bincount(place.ravel(), weights=verdict, minlength=size)
-        every = np.bincount(place.ravel(), minlength=size).astype(np.float64)
-        trials = Trials.from_verdicts(points, over.astype(np.float64), every)
+        points, place, every = np.unique(logs, axis=0, return_inverse=True, return_counts=True)
+        over = np.bincount(place.ravel(), weights=verdict).astype(np.float64)
+        trials = Trials.from_verdicts(points, over, every.astype(np.float64))
     else:
         trials = Trials.from_verdicts(logs, verdict, np.ones(len(verdict)), cluster)
     return StructureTrials(trials, runs, int((~used).sum()), motions)

@@ -133,9 +133,8 @@ def _fit_sentence(last: xr.Dataset, status: AnyArray, fitted: AnyArray) -> str:
     state = str(last["limit_state"].item()) if "limit_state" in last.coords else "what was counted"
     by = ", ".join(map(str, last["fragility_status"].dims))
     aside = [f"{len(status)} structures by {by}"] if len(status) > 1 else []
-    aside += (
-        [f"pooled over {last.attrs[POOLED_ATTRIBUTE]}"] if POOLED_ATTRIBUTE in last.attrs else []
-    )
+    if POOLED_ATTRIBUTE in last.attrs:
+        aside.append(f"pooled over {last.attrs[POOLED_ATTRIBUTE]}")
     head = f"{state} ({'; '.join(aside)})" if aside else state
     if not fitted.any():
         whys = (FragilityStatus(code).name.lower().replace("_", " ") for code in status)

@@ -230,12 +230,10 @@ def labels_in_unit(labels: xr.DataArray, unit: str | None, *, owner: str) -> xr.
 
 def in_units_of_schema(dataset: xr.Dataset, *, owner: str) -> xr.Dataset:
     """Return variables in their units, if a user has converted them, for example for a figure."""
-    units = {
-        name: SCHEMA[str(name)].unit for name, values in dataset.data_vars.items()
-        if name in SCHEMA and values.attrs.get("units") not in (None, SCHEMA[str(name)].unit)
-    }  # fmt: skip
     converted = {
-        name: labels_in_unit(dataset[name], unit, owner=owner) for name, unit in units.items()
+        name: labels_in_unit(values, SCHEMA[str(name)].unit, owner=owner)
+        for name, values in dataset.data_vars.items()
+        if name in SCHEMA
     }
     return dataset.assign(converted)
 

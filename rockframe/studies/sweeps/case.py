@@ -278,8 +278,8 @@ def _scene(swept: SweptScene | None, attributes: Mapping[str, Any], owner: str) 
 def unscaled_motions(
     attributes: Mapping[str, Any],
     names: Iterable[str],
-    value: object = None,
-    stored: Store | None = None,
+    value: object,
+    stored: Store | None,
     *,
     needed: bool = True,
     owner: str = _OWNER,
@@ -291,9 +291,8 @@ def unscaled_motions(
     available = {} if study is None else study.motions
     if stored is not None:
         available = stored.motions()
-    records = (
-        {} if value is None else {motion.sha256: motion for motion in named_motions(value).values()}
-    )
+    given = {} if value is None else named_motions(value)
+    records = {motion.sha256: motion for motion in given.values()}
     motions: dict[str, GroundMotion | None] = {}
     for name in names:
         description = described[name]
@@ -320,11 +319,13 @@ def store_of(runs: xr.Dataset) -> Store | None:
     return store if store.digest == runs.attrs.get("study_sha256") else None
 
 
-def known_motions(runs: xr.Dataset, motions: object = None) -> dict[str, GroundMotion]:
+def known_motions(
+    runs: xr.Dataset, motions: object = None, *, needed: bool = False, owner: str = _OWNER
+) -> dict[str, GroundMotion]:
     """Return the available motions of a sweep by name, before they were scaled."""
     names: list[str] = json.loads(runs.attrs["motion_names"])
     if MOTION in runs:
         used = set(runs[MOTION].to_numpy().astype(str).ravel().tolist())
         names = [name for name in names if name in used]
-    unscaled = unscaled_motions(runs.attrs, names, motions, store_of(runs), needed=False)
-    return {name: motion for name, motion in unscaled.items() if motion is not None}
+    every = unscaled_motions(runs.attrs, names, motions, store_of(runs), needed=needed, owner=owner)
+    return {name: motion for name, motion in every.items() if motion is not None}

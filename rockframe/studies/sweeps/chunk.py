@@ -170,9 +170,8 @@ def doubtful_cases(
 ) -> list[int]:
     """Run cases a second time, and give those whose verdict is not sure."""
     doubtful = set(first)
-    for run in run_cases(
-        cases.with_change(second_look), sorted(first), stopped, cases.job.compile_timeout
-    ):
+    again = cases.with_change(second_look)
+    for run in run_cases(again, sorted(first), stopped, cases.job.compile_timeout):
         for case, look in verdict_looks(cases, run):
             if is_sure(first[case], look):
                 doubtful.discard(case)

@@ -51,8 +51,7 @@ def description_of(value: object) -> Any:
         return _describe_function(value)
     msg = (
         f"found {short_repr(value)}, of which nothing tells whether it is the same in another "
-        "process; "
-        "expected numbers, words, arrays, motions, components or dataclasses of them"
+        "process; expected numbers, words, arrays, motions, components or dataclasses of them"
     )
     raise StudyError(msg)
 

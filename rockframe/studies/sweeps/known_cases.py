@@ -71,12 +71,8 @@ class _Source:
         self.stored = Store.open(folder)
         description = self.stored.description()
         requested = json.loads(json.dumps(study.to_dict()))
-        differs = difference(
-            *(
-                {k: v for k, v in d.items() if k not in _MAY_DIFFER}
-                for d in (description, requested)
-            )
-        )
+        names = difference(description, requested)
+        differs = [name for name in names if name.partition(" ")[0] not in _MAY_DIFFER]
         if differs:
             msg = (
                 f"known: {folder} holds a study that differs in {', '.join(differs)}; expected one "

@@ -131,7 +131,7 @@ def dataset_without_results(
     if CASE in sizes:
         around[CASE] = np.arange(sizes[CASE])
     if labels.histories is not None:
-        around[TIME[0]] = labels.histories.times
+        around[TIME[0]] = labels.histories.step * np.arange(labels.histories.count)
     if labels.points:
         around |= point_labels(labels.points)
     return build_dataset(around, attributes, title="Sweep of a rocking system")
@@ -146,10 +146,9 @@ def with_coordinates(dataset: xr.Dataset, labels: SweepLabels, message: xr.Varia
         coordinates[BODY[0]] = 1 + np.arange(count)
     if (count := dataset.sizes.get(RESTRAINER[0])) is not None:
         names = json.loads(str(labels.attributes.get("restrainer_names", "[]")))
-        numbers = [str(k + 1) for k in range(count)]
-        coordinates[RESTRAINER[0]] = np.array(
-            names if len(names) == count else numbers, dtype=object
-        )
+        if len(names) != count:
+            names = [str(k + 1) for k in range(count)]
+        coordinates[RESTRAINER[0]] = np.array(names, dtype=object)
     return without_fill_values(with_variables(dataset, coordinates))
 
 

@@ -123,10 +123,9 @@ def run_assembled_singly(
                 key = (cases.scene_key(case), cases.start_key(case), cases.length_key(case))
                 if key not in scenes:
                     scenes[key] = None  # unless it can be prepared
-                    lane_scene = prepare_lanes(*cases.plan(case))
-                    scenes[key] = (
-                        lane_scene if lane_scene is not None and ready(lane_scene) else None
-                    )
+                    prepared = prepare_lanes(*cases.plan(case))
+                    if prepared is not None and ready(prepared):
+                        scenes[key] = prepared
                 if (scene := scenes[key]) is not None:
                     moved = (id(cases.unscaled_motion(case)), cases.motion_key(case)[1])
                     if moved not in motions:

@@ -101,9 +101,8 @@ class _Column(BackendArray):
 
     def _read_cases(self, numbers: AnyArray) -> AnyArray:
         """Read cases by their numbers in the order of running."""
-        column = np.full(
-            (len(numbers), *self._beside), _FILL_VALUES.get(self._name, np.nan), self.dtype
-        )
+        fill = _FILL_VALUES.get(self._name, np.nan)
+        column = np.full((len(numbers), *self._beside), fill, self.dtype)
         of_chunk = numbers // self._stored.chunk
         order = np.argsort(of_chunk, kind="stable")
         used, firsts = np.unique(of_chunk[order], return_index=True)

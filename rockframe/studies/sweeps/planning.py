@@ -54,7 +54,6 @@ from rockframe.studies.sweeps.scenes import (
     scene_of,
 )
 from rockframe.studies.sweeps.study import Histories, Study
-from rockframe.system.assembly import Assembly
 from rockframe.system.single_body import SingleBodySetting
 from rockframe.units import PERIOD, POSITIVE, QuantityLike, attached_unit, to_si
 
@@ -168,12 +167,9 @@ def plan_study(
     seconds = faults.attempt(lambda: _read_period(period, [*grid.columns, *grid.axes]), None)
     if arguments is None or faults.found:
         raise StudyError(*faults.found)
-    screening_skipped = False
-    if screened and isinstance(swept, SystemScene):
-        screening_skipped = not _is_screening_cheaper(swept.assembly, named.values())
-        screened = not screening_skipped
+    screening_skipped = screened and not _is_screening_cheaper(swept, named.values())
     if screening_skipped:
-        requested["accuracy"] = REPEATED_LEVEL
+        screened, requested["accuracy"] = False, REPEATED_LEVEL
         arguments = read_arguments(faults.found, **requested)
     if not 0 < grid.count <= MAX_CASES:
         faults.found.append(f"there are {grid.count} cases; expected 1 to {MAX_CASES}")
@@ -229,18 +225,18 @@ def _read_grid(
     return Grid(tuple(grid_axes), tuple(rows), len(motions), of_case)
 
 
-def _is_screening_cheaper(system: Assembly, motions: Iterable[GroundMotion | None]) -> bool:
-    """Say whether two runs by fixed steps cost less than one by tolerance.
+def _is_screening_cheaper(scene: SweptScene, motions: Iterable[GroundMotion | None]) -> bool:
+    """Say whether two runs by fixed steps cost less than one by tolerance, as far as is known.
 
     On rigid ground there are no more steps by tolerance. Under pulses in closed form there are
     few of either kind, so that a second run costs what surrounds the steps; those of several
     bodies are dear enough.
     """
-    if not system.setting.steps_cost_most:
-        return False
-    return not isinstance(system.setting, SingleBodySetting) or any(
-        motion is None or motion.recipe is None for motion in motions
-    )
+    if not isinstance(scene, SystemScene):
+        return True
+    setting = scene.assembly.setting
+    sampled = any(motion is None or motion.recipe is None for motion in motions)
+    return setting.steps_cost_most and (sampled or not isinstance(setting, SingleBodySetting))
 
 
 def _read_table(cases: object) -> dict[str, object]:

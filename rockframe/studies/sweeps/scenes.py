@@ -11,7 +11,7 @@ import numpy as np
 from rockframe.arguments import call_signature, checked_choice
 from rockframe.components import Component, InitialState, RockingFrame, Stack
 from rockframe.components.parameters import Choice, Count, Declared, Flag, Text
-from rockframe.errors import ModelWarning, StudyError, short_repr, warn
+from rockframe.errors import ModelWarning, StudyError, did_you_mean, short_repr, warn
 from rockframe.motion import GroundMotion
 from rockframe.results.schema import SCHEMA
 from rockframe.shared_arguments import suggestion
@@ -119,8 +119,7 @@ class SystemScene:
             if twice := part.too_many(values):
                 names = " and ".join(repr(values[name]) for name in twice)
                 faults.append(f"axes {names} of {type(part).__name__} determine its size twice")
-            behind = part.left_behind([*values])
-            if behind:
+            if behind := part.left_behind([*values]):
                 faults.append(_unchanged_parameter_fault(part, behind, values))
         return faults
 
@@ -252,9 +251,7 @@ class FunctionScene:
             signature.bind(**values)
         except TypeError as problem:
             unknown = [name for name in values if name not in signature.parameters]
-            question = (
-                suggestion(unknown[0], SWEEP_ARGUMENT_NAMES).removesuffix(".") if unknown else ""
-            )
+            question = did_you_mean(unknown[0], SWEEP_ARGUMENT_NAMES) if unknown else ""
             return [f"the axes do not fit the arguments of {self.name}: {problem}{question}"]
         return []
 

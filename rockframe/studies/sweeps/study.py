@@ -54,11 +54,6 @@ class Histories:
     step: float  # between the times [s]
     count: int  # of the times
 
-    @property
-    def times(self) -> AnyArray:
-        """The times [s]."""
-        return np.arange(self.count, dtype=np.float64) * self.step
-
 
 @dataclass(frozen=True, eq=False)
 class SweepJob:
@@ -190,9 +185,8 @@ class Study:
         if tolerance is None:
             duration = _RUN_OVERHEAD + intervals * _TIME_OF_FIXED_STEPS
         else:
-            duration = (_RUN_OVERHEAD + intervals * _TIME_OF_ADAPTIVE_STEPS) * (
-                2e-8 / float(tolerance)
-            ) ** 0.2
+            duration = _RUN_OVERHEAD + intervals * _TIME_OF_ADAPTIVE_STEPS
+            duration *= (2e-8 / float(tolerance)) ** 0.2
         return duration * (_SCREENING_RATIO if self.screened else 1.0)
 
 

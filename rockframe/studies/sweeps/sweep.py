@@ -237,8 +237,7 @@ def open_study(path: str | PathLike[str], *, lazy: bool = False) -> xr.Dataset:
             f"be others than those of this one, {__version__}",
             ModelWarning,
         )
-    later = checked_bool(lazy, owner="open_study", name="lazy")
-    return stored_dataset(stored, lazy=later)
+    return stored_dataset(stored, lazy=checked_bool(lazy, owner="open_study", name="lazy"))
 
 
 def run_study(

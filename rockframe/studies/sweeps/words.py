@@ -92,9 +92,8 @@ def _counts(runs: xr.Dataset, slips: AnyArray) -> dict[str, int]:
     if _BROKEN in runs:
         which["broke"] = runs[_BROKEN] > 0
     if REPEATED in runs:
-        which |= {"screened": runs[REPEATED].notnull()} | {
-            n: runs[n] == 1.0 for n in SCREENING_VARIABLES
-        }
+        which["screened"] = runs[REPEATED].notnull()
+        which |= {name: runs[name] == 1.0 for name in SCREENING_VARIABLES}
     counts = {name: int(np.count_nonzero(some)) for name, some in which.items()}
     if "would_slide" in runs:
         slides = count_slides(runs["would_slide"].to_numpy())
