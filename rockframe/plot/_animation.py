@@ -241,7 +241,7 @@ def animation(
     heights = [height, 1.3, *[0.42] * (len(names) - 2)]
     sheet = make_sheet(
         ax, "animation", names, (max(width, 5.4), 0.6 + sum(heights)),
-        lambda figure: figure.subplots(len(names), 1, height_ratios=heights),
+        nrows=len(names), height_ratios=heights,
     )  # fmt: skip
     above, trace, *strips = sheet.panels
     response(shown_run.dataset, panels=("rotation", "contact"), rotation=rotation_unit, units=units,

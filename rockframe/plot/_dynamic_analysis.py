@@ -16,6 +16,7 @@ from rockframe.plot._axes import (
     grid,
     intensity_label,
     label_log_ticks,
+    limit_state_label,
     line_colour,
     line_style,
     variable_label,
@@ -109,8 +110,7 @@ def dynamic_analysis(
     widths = [_PANELS[name] for name in names]
     sheet = make_sheet(
         ax, "dynamic_analysis", names, (0.8 + 2.83 * sum(widths), 4.4),
-        lambda figure: figure.subplots(1, len(names), width_ratios=widths, sharey=True),
-        choice=True,
+        choice=True, ncols=len(names), width_ratios=widths, sharey=True,
     )  # fmt: skip
     drawn = dict(zip(names, sheet.panels, strict=True))
     measure = data[str(data.attrs.get("intensity", "scale"))]
@@ -393,17 +393,12 @@ def annual_rate(
     edges = np.exp(np.append(logs - 0.5 * step, logs[-1] + 0.5 * step))
     for number in range(data.sizes["limit_state"]):
         rates = data.isel(limit_state=number)
-        state = (
-            as_label(str(rates["limit_state"].item()))
-            if "limit_state" in rates.coords
-            else "counted"
-        )
         rate = float(rates["annual_rate"])
         if np.isnan(rate):
             continue
         axes.stairs(
             100.0 * rates["rate_share"].to_numpy(), edges, color=line_colour(number), lw=1.4,
-            fill=True, alpha=0.35, label=f"{state}: {rate:.3g} a year",
+            fill=True, alpha=0.35, label=f"{limit_state_label(rates)}: {rate:.3g} a year",
         )  # fmt: skip
     axes.set(
         xscale="log", ylabel="share of the rate [%]",

@@ -60,8 +60,7 @@ def tradeoff(
     models = [str(name) for name in dataset["model"].to_numpy()]
     sheet = make_sheet(
         ax, "tradeoff", ("integration", "model and integration"),
-        (11.0, max(3.4, 2.4 + 0.4 * len(models))),
-        lambda figure: figure.subplots(1, 2),
+        (11.0, max(3.4, 2.4 + 0.4 * len(models))), ncols=2,
     )  # fmt: skip
     axes = sheet.panels
     colours = colormaps["viridis"](np.linspace(0.1, 0.8, len(models)))
