@@ -54,12 +54,9 @@ def script(shell: str) -> str:
     return {"bash": _bash, "zsh": _zsh, "fish": _fish}[shell]()
 
 
-def _options(command: Command) -> list[tuple[CommandArgument, str]]:
-    """Return the options of a command, each by its long name."""
+def _options(command: Command) -> list[CommandArgument]:
     values = (*command.arguments, *COMMON_OPTIONS)
-    return [
-        (argument, argument.names[-1]) for argument in values if argument.names[0].startswith("-")
-    ]
+    return [argument for argument in values if argument.name.startswith("-")]
 
 
 def _choices(command: Command) -> list[str]:
@@ -69,7 +66,7 @@ def _choices(command: Command) -> list[str]:
 def _bash() -> str:
     cases = []
     for command in COMMANDS:
-        words = [*_choices(command), *(name for _, name in _options(command)), "--help"]
+        words = [*_choices(command), *(option.name for option in _options(command)), "--help"]
         cases.append(f'            {command.name}) words="{" ".join(words)}" ;;')
     names = " ".join(command.name for command in COMMANDS)
     return _BASH.replace("@COMMANDS@", names).replace("@CASES@", "\n".join(cases))
@@ -79,8 +76,8 @@ def _zsh() -> str:
     cases = []
     for command in COMMANDS:
         words = [
-            f"'{name}[{_unquoted_help(argument)}]{_zsh_value(argument)}'"
-            for argument, name in _options(command)
+            f"'{option.name}[{_unquoted_help(option)}]{_zsh_value(option)}'"
+            for option in _options(command)
         ]
         choices = _choices(command)
         places = f"'*:choice:({' '.join(choices)})'" if choices else "'*:file:_files'"
@@ -104,9 +101,9 @@ def _fish() -> str:
     for command in COMMANDS:
         seen = f"complete -c rockframe -n '__fish_seen_subcommand_from {command.name}'"
         lines += [
-            f"{seen} -l {name.removeprefix('--')} -d '{_unquoted_help(argument)}'"
-            f"{'' if 'action' in argument.settings else ' -r'}"
-            for argument, name in _options(command)
+            f"{seen} -l {option.name.removeprefix('--')} -d '{_unquoted_help(option)}'"
+            f"{'' if 'action' in option.settings else ' -r'}"
+            for option in _options(command)
         ]
         choices = _choices(command)
         if choices:
@@ -116,7 +113,4 @@ def _fish() -> str:
 
 def _unquoted_help(argument: CommandArgument) -> str:
     """Return the help text of an option without characters that shells interpret."""
-    words = str(argument.settings.get("help", ""))
-    for mark in "'[]:":
-        words = words.replace(mark, "")
-    return words
+    return str(argument.settings.get("help", "")).translate(dict.fromkeys(map(ord, "'[]:")))
