@@ -2,7 +2,7 @@
 
 import base64
 import sys
-from collections.abc import Iterable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from html import escape
 from io import BytesIO
 from typing import TYPE_CHECKING, Any, Final, cast
@@ -61,8 +61,7 @@ pre { overflow-x: auto; background: var(--band); padding: .7rem .9rem; font-size
 li { margin: .25rem 0; }
 .sheet { margin: 1rem 0; }
 code { overflow-wrap: anywhere; }
-@media (max-width: 30rem) { .many { font-size: .84rem; }
-td.value { white-space: normal; } }
+@media (max-width: 30rem) { td.value { white-space: normal; } }
 @page { size: A4; margin: 18mm 16mm; }
 @media print {
   :root { --ink: #000000; --soft: #444444; --paper: #ffffff; --line: #bbbbbb; --band: #f4f4f4;
@@ -71,8 +70,7 @@ td.value { white-space: normal; } }
   figure, tr, .verdict, .sheet { break-inside: avoid; }
   thead { display: table-header-group; }
   .scroll { overflow: visible; } table { font-size: 9pt; }
-  .many { font-size: .84rem; }
-td.value { white-space: normal; overflow-wrap: anywhere; min-width: 5.5rem; }
+  td.value { white-space: normal; overflow-wrap: anywhere; min-width: 5.5rem; }
   .many { font-size: 8pt; } .many td.value { min-width: 0; }
   h2, h3, dt { break-after: avoid; }
   figure img { width: auto; max-width: 100%; max-height: 8cm; }
@@ -115,34 +113,33 @@ def banner(title: str, words: str, kind: str) -> str:
 
 def parameter_table(values: Iterable[Sequence[str]], *, head: Sequence[str] = ()) -> str:
     """Return a table; the second column holds values."""
-    lines = ['<div class="scroll"><table>']
-    if head:
-        names = "".join(f"<th>{escape(name)}</th>" for name in head)
-        lines.append(f"<thead><tr>{names}</tr></thead>")
-    lines.append("<tbody>")
-    for row in values:
-        cells = "".join(
-            f"<td{_class_attribute('value' if column == 1 else '')}>{escape(cell)}</td>"
-            for column, cell in enumerate(row)
-        )
-        lines.append(f"<tr>{cells}</tr>")
-    lines.append("</tbody></table></div>")
-    return "\n".join(lines)
+    return _table(values, head, "", lambda column, _: column == 1)
 
 
 def number_table(values: Iterable[Sequence[str]], head: Sequence[str]) -> str:
     """Return a table in which all columns but the first hold values."""
+    return _table(
+        values, head, "many", lambda column, cell: column > 0 and len(cell) <= _MAX_VALUE_LENGTH
+    )
+
+
+def _table(
+    values: Iterable[Sequence[str]],
+    head: Sequence[str],
+    kind: str,
+    is_value: Callable[[int, str], bool],  # of a cell, by its column and its words
+) -> str:
     names = "".join(f"<th>{escape(name)}</th>" for name in head)
-    lines = [f'<div class="scroll"><table class="many"><thead><tr>{names}</tr></thead><tbody>']
-    for first, *others in values:
+    lines = [f'<div class="scroll"><table{_class_attribute(kind)}>']
+    lines += [f"<thead><tr>{names}</tr></thead>"] if head else []
+    lines.append("<tbody>")
+    for row in values:
         cells = "".join(
-            f"<td{_class_attribute(kind)}>{escape(cell)}</td>"
-            for cell in others
-            for kind in ["value" if len(cell) <= _MAX_VALUE_LENGTH else ""]
+            f"<td{_class_attribute('value' * is_value(column, cell))}>{escape(cell)}</td>"
+            for column, cell in enumerate(row)
         )
-        lines.append(f"<tr><td>{escape(first)}</td>{cells}</tr>")
-    lines.append("</tbody></table></div>")
-    return "\n".join(lines)
+        lines.append(f"<tr>{cells}</tr>")
+    return "\n".join([*lines, "</tbody></table></div>"])
 
 
 def numbered_list(values: Iterable[str | tuple[str, str]]) -> str:
