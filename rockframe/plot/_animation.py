@@ -164,13 +164,8 @@ class Animation:
     def _film(self) -> "FuncAnimation":
         from matplotlib.animation import FuncAnimation
 
-        def draw(number: int) -> list[Any]:
-            self._draw(number)
-            return []
-
-        return FuncAnimation(
-            self.figure, draw, frames=self.times.size, interval=1e3 / self._rate, blit=False
-        )
+        draw = cast("Any", self._draw)  # it returns artists only where these are blitted
+        return FuncAnimation(self.figure, draw, self.times.size, interval=1e3 / self._rate)
 
     def _repr_html_(self) -> str:
         self.close()  # otherwise the notebook would show the last frame too

@@ -48,19 +48,17 @@ _ROUNDING: Final = 1e-9
 """By which the peak of a run that ends at the overturning angle may lie below it."""
 
 
-def single_structure(dataset: xr.Dataset) -> xr.Dataset:
+def _single_structure(dataset: xr.Dataset, variable: str, function: str, named: str) -> xr.Dataset:
     """Return an analysis without axes of a single value; raise on several structures."""
-    dims = dataset["capacity_scale"].dims
-    structure_dims = [dim for dim in dims if dim not in ("limit_state", "motion")]
-    several = [f"{dim} ({dataset.sizes[dim]})" for dim in structure_dims if dataset.sizes[dim] > 1]
+    dims = [str(dim) for dim in dataset[variable].dims if dim not in ("limit_state", "motion")]
+    several = [dim for dim in dims if dataset.sizes[dim] > 1]
     if several:
         msg = (
-            f"rf.plot.dynamic_analysis draws one structure, this analysis is of several, by "
-            f"{', '.join(several)}; choose one, for example with "
-            f"analysis.isel({structure_dims[0]}=0)"
+            f"rf.plot.{function}: found several structures, by {', '.join(several)}; pick one, "
+            f"for example with {named}.isel({several[0]}=0)"
         )
         raise SchemaError(msg)
-    return dataset.squeeze(structure_dims)
+    return dataset.squeeze(dims)
 
 
 @draws(
@@ -105,7 +103,9 @@ def dynamic_analysis(
     >>> panels[0].get_ylabel()
     'peak ground acceleration [g]'
     """
-    data = single_structure(figure_data(dataset, "dynamic_analysis", units))
+    dataset = figure_data(dataset, "dynamic_analysis")
+    dataset = _single_structure(dataset, "capacity_scale", "dynamic_analysis", "analysis")
+    data = figure_data(dataset, "dynamic_analysis", units)
     names = chosen_panels(panels, _PANELS, "dynamic_analysis")
     widths = [_PANELS[name] for name in names]
     sheet = make_sheet(
@@ -131,7 +131,7 @@ def dynamic_analysis(
     for axes in sheet.panels if sheet.own_figure is None else sheet.panels[:1]:
         axes.set_ylabel(intensity_label(measure, data))
     sheet.add_common_legend()
-    verdict = verdict_of_analysis(single_structure(dataset))
+    verdict = verdict_of_analysis(dataset)
     sheet.set_title(figure_units(units, "dynamic_analysis").reader.convert_text(verdict), title)
     return sheet.panels
 
@@ -374,15 +374,7 @@ def annual_rate(
     'share of the rate [%]'
     """
     data = figure_data(dataset, "annual_rate", units)
-    several = [str(dim) for dim in data["annual_rate"].dims if dim != "limit_state"]
-    data = data.isel({dim: 0 for dim in several if data.sizes[dim] == 1})
-    wide = [dim for dim in several if dim in data.dims]
-    if wide:
-        msg = (
-            f"rf.plot.annual_rate: found several structures, by {', '.join(wide)}; pick one, for "
-            f"example with rates.isel({wide[0]}=0)"
-        )
-        raise SchemaError(msg)
+    data = _single_structure(data, "annual_rate", "annual_rate", "rates")
     if "limit_state" not in data.dims:
         data = data.expand_dims("limit_state")
     sheet = make_single_panel(ax, "annual_rate", (6.0, 4.0))
