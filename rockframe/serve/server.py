@@ -47,20 +47,7 @@ _PLAYER_POLICY: Final = (
 
 
 class Server(ThreadingHTTPServer):
-    """A server of the page at a port of this machine.
-
-    Parameters
-    ----------
-    port : int
-        Port of the loopback address; 0 for a free one.
-    record : NamedRecord, optional
-        A record to offer besides pulses and the example.
-
-    Raises
-    ------
-    ComponentError
-        The port is out of range, or is in use.
-    """
+    """A server of the page at a port of this machine, or at any free one for port 0."""
 
     daemon_threads = True
     allow_reuse_address = sys.platform != "win32"
