@@ -17,6 +17,7 @@ if TYPE_CHECKING:
     from rockframe.simulation.system import System
     from rockframe.units.display import UnitsLike
 
+_DIMENSIONS = "over"
 _SHOWN = (
     "peak_rotation",
     "peak_relative_rotation",
@@ -170,22 +171,24 @@ class RockframeAccessor:
     @property
     def summary(self) -> str:
         """Contents and outcome of the dataset, in a few lines."""
+        lines = [str(self._dataset.attrs.get("title", "")), self.verdict]
+        for name, words in self._rows().items():
+            lines.append(f"{name}{' ' if name == _DIMENSIONS else ': '}{words}")
+        return "\n".join(filter(None, lines))
+
+    def _rows(self) -> dict[str, str]:
+        """Return what the dataset is a result of, and its main numbers."""
         from rockframe.results.variables.variable import unit_suffix_of
 
         data = self._dataset
-        lines = [line for line in (str(data.attrs.get("title", "")), self.verdict) if line]
-        lines += [
-            f"{name}: {data.attrs[name]}"
-            for name in ("model", "motion", "accuracy")
-            if name in data.attrs
-        ]
+        described = (name for name in ("model", "motion", "accuracy") if name in data.attrs)
+        rows = {name: str(data.attrs[name]) for name in described}
         if len(data.sizes) > 0:
-            lines.append("over " + ", ".join(f"{dim} ({n})" for dim, n in data.sizes.items()))
+            rows[_DIMENSIONS] = ", ".join(f"{dim} ({n})" for dim, n in data.sizes.items())
         for name in _SHOWN:
             if name in data and data[name].ndim == 0 and not math.isnan(data[name].item()):
-                unit = unit_suffix_of(data[name].attrs)
-                lines.append(f"{name}: {data[name].item():.4g}{unit}")
-        return "\n".join(lines)
+                rows[name] = f"{data[name].item():.4g}{unit_suffix_of(data[name].attrs)}"
+        return rows
 
     def __repr__(self) -> str:
         return self.summary
@@ -194,13 +197,11 @@ class RockframeAccessor:
         from rockframe.notebook import html_summary, sparkline
         from rockframe.units import degrees_text
 
-        value, lines = self._dataset, self.summary.splitlines()
+        value = self._dataset
         kind = str(value.attrs.get("title", ""))
         first = self.verdict or kind or "Dataset"
         rows = {"result": kind} if self.verdict and kind else {}
-        for line in lines[bool(kind) + bool(self.verdict) :]:
-            name, _, words = line.partition(" " if line.startswith("over ") else ": ")
-            rows[name.replace("_", " ")] = words
+        rows |= {name.replace("_", " "): words for name, words in self._rows().items()}
         for name in ("peak_rotation", "uplift_angle", "overturning_angle"):
             if name in value and value[name].ndim == 0:
                 rows[name.replace("_", " ")] = degrees_text(value[name].item())

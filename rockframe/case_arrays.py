@@ -24,17 +24,11 @@ MIN_CASES: Final = 16
 
 
 class BranchesDiffer(BaseException):
-    """A comparison has different results in the cases.
-
-    Parameters
-    ----------
-    truths : ndarray of bool, shape (cases,)
-        The result in each case.
-    """
+    """A comparison has different results in the cases."""
 
     def __init__(self, truths: NDArray[np.bool_]) -> None:
         super().__init__()
-        self.truths = truths
+        self.truths = truths  # the result in each case
 
 
 class SingleCaseOnly(BaseException):
@@ -77,13 +71,7 @@ def _comparison(function: Callable[[Any, Any], Any]) -> Any:
 
 
 class CaseArray:
-    """A number that has a value in each of many cases.
-
-    Parameters
-    ----------
-    values : ndarray, shape (cases,)
-        The values; they must not be changed.
-    """
+    """A number that has a value in each of many cases; the values must not be changed."""
 
     __slots__ = ("values",)
 
@@ -141,18 +129,7 @@ def run_by_branches(
 ) -> Iterator[tuple[CaseIndices, Result]]:
     """Split cases into groups with the same branches of the code, and compute each group.
 
-    Parameters
-    ----------
-    function : callable
-        ``function(cases)``, which computes with :class:`CaseArray` in place of numbers.
-    cases : ndarray, shape (cases,)
-        Numbers of the cases, in ascending order.
-
-    Yields
-    ------
-    tuple
-        Cases of one group, and the result of `function`. Cases of smaller groups are left out, and
-        those that can only be computed one by one.
+    Cases of groups that are too small are left out, and those that can only be computed one by one.
     """
     groups = [cases]
     while groups:

@@ -36,7 +36,7 @@ from rockframe.dynamics.protocol import (
 from rockframe.dynamics.protocol import Equations as System
 from rockframe.results.diagnostics import Diagnostic
 from rockframe.results.variables.variable import EVENT, TIME, Variable
-from rockframe.suggestions import module_getattr
+from rockframe.suggestions import public_names
 from rockframe.system.bodies import BaseLoad
 from rockframe.system.links import OwnLink
 from rockframe.system.own_base import OwnBase
@@ -119,9 +119,5 @@ __all__ = [
     "springs_under",
 ]
 
-if not TYPE_CHECKING:  # or no name would be unknown to type checkers
-    __getattr__ = module_getattr(__name__, __all__)
-
-
-def __dir__() -> list[str]:
-    return __all__
+if not TYPE_CHECKING:  # otherwise type checkers would accept any name
+    __getattr__, __dir__ = public_names(__name__, __all__)

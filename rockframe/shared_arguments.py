@@ -143,12 +143,7 @@ def completed_docstring(text: str, names: Iterable[str], declared: Mapping[str, 
         return text
     clean = with_section(text, "Parameters", "", ("Returns", "Raises", "Notes", "Examples"))
     section = cast("re.Match[str]", _PARAMETERS.search(clean))
-    rows = {
-        name.strip().lstrip("*"): row.rstrip()
-        for row in _ROW.split(section[0])
-        if row.strip()
-        for name in row.split(" :")[0].split("\n")[0].split(",")
-    }
+    rows = parameter_rows(clean)
     ordered = dict.fromkeys(
         rows[name] if name in rows else _parameter_row(name, declared[name])
         for name in names
@@ -156,6 +151,17 @@ def completed_docstring(text: str, names: Iterable[str], declared: Mapping[str, 
     )
     before, after = clean[: section.start()], clean[section.end() :]
     return before + "\n".join(ordered) + f"\n\n{after}".rstrip() + "\n"
+
+
+def parameter_rows(text: str) -> dict[str, str]:
+    """Return the rows on parameters in a docstring without indent, by their names."""
+    section = _PARAMETERS.search(text)
+    return {
+        name.strip().lstrip("*"): row.rstrip()
+        for row in _ROW.split(section[0] if section else "")
+        if row.strip()
+        for name in row.split(" :")[0].split("\n")[0].split(",")
+    }
 
 
 def _parameter_row(name: str, argument: Argument) -> str:

@@ -146,11 +146,13 @@ class Immutable(metaclass=SuggestingMeta):
         return [name for name in super().__dir__() if not name.startswith("_")]
 
 
-def module_getattr(module: str, names: Iterable[str]) -> Callable[[str], NoReturn]:
-    """Return a function ``__getattr__`` for a module: it proposes a similar public name."""
-    known, owner = list(names), f"module {module!r}"
+def public_names(
+    module: str, names: list[str]
+) -> tuple[Callable[[str], NoReturn], Callable[[], list[str]]]:
+    """Return ``__getattr__`` and ``__dir__`` of a module, for proposals of its public names."""
+    owner = f"module {module!r}"
 
     def no_attribute(name: str) -> NoReturn:
-        raise unknown_attribute(owner, name, known)
+        raise unknown_attribute(owner, name, names)
 
-    return no_attribute
+    return no_attribute, lambda: names

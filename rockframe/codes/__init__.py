@@ -5,13 +5,9 @@ from typing import TYPE_CHECKING
 from rockframe.codes.asce import asce_7_22
 from rockframe.codes.circolare import circolare_2019
 from rockframe.reports.checks import CheckedLine, CheckedVerdict, CodeCheck
-from rockframe.suggestions import module_getattr
+from rockframe.suggestions import public_names
 
 __all__ = ["CheckedLine", "CheckedVerdict", "CodeCheck", "asce_7_22", "circolare_2019"]
 
-if not TYPE_CHECKING:  # or no name would be unknown to type checkers
-    __getattr__ = module_getattr(__name__, __all__)
-
-
-def __dir__() -> list[str]:
-    return __all__
+if not TYPE_CHECKING:  # otherwise type checkers would accept any name
+    __getattr__, __dir__ = public_names(__name__, __all__)

@@ -389,12 +389,9 @@ def _finish_analysis(
     arguments: argparse.Namespace,
     answer: Answer,
     outputs: Outputs,
-    runs: xr.Dataset | None = None,
+    runs: xr.Dataset | None = None,  # that were analysed, unless the dataset has their status
 ) -> int:
-    """Report the numbers of an analysis, write its result and picture, and return the exit code.
-
-    `runs` are those that were analysed, unless `dataset` has their status itself.
-    """
+    """Report the numbers of an analysis, write its result and picture, and return the exit code."""
     answer.add_numbers(dataset)
     outputs.write_result(dataset)
     if arguments.picture is not None:

@@ -24,6 +24,8 @@ _MAX_WIDTH: Final = 100
 """Widest table that is printed in one piece, in characters."""
 _TITLE_WIDTH: Final = 14
 """Width of the heads of its columns where it is wider."""
+_INPUT, _RESULT, _FILE = "input", "result", "file"
+"""What a line of text is about: --quiet omits input and files, an error the input."""
 _HISTORY_DIMS: Final = {"time", "event", "sample_after_end"}
 """Dimensions of histories, which only the files of results hold."""
 
@@ -34,8 +36,7 @@ class Answer:
     def __init__(self, command: str, *, quiet: bool, verbose: bool, as_json: bool) -> None:
         self.quiet, self.as_json = quiet, as_json
         self._verbose = verbose
-        self._context_lines: list[int] = []  # numbers of the lines on the input
-        self._lines: list[tuple[bool, str]] = []  # whether --quiet omits the line; the line
+        self._lines: list[tuple[str, str]] = []  # what a line is about: _INPUT, _RESULT, _FILE
         self._fields: dict[str, Any] = {"command": command, "version": __version__}
         self._numbers: dict[str, Any] = {}
         self._files: dict[str, list[str]] = {}
@@ -45,16 +46,15 @@ class Answer:
 
     def add_context(self, label: str, words: str) -> None:
         """Add a line on the input, such as the scene; --quiet omits it."""
-        self._context_lines.append(len(self._lines))
-        self._add(label, words, context=True)
+        self._add(label, words, _INPUT)
 
     def add_result(self, label: str, words: str) -> None:
         """Add a line on the result."""
-        self._add(label, words, context=False)
+        self._add(label, words, _RESULT)
 
     def add_text(self, words: str, **named: Any) -> None:
         """Add lines of text as they are; JSON has the named values instead."""
-        self._lines.append((False, words))
+        self._lines.append((_RESULT, words))
         self._fields |= {name: _json_value(value) for name, value in named.items()}
 
     def add_table(self, values: Any) -> None:
@@ -72,7 +72,7 @@ class Answer:
 
     def add_file(self, title: str, path: object) -> None:
         """Report a file that was written."""
-        self._lines.append((True, f"{title}: {path}"))
+        self._lines.append((_FILE, f"{title}: {path}"))
         self._files.setdefault(title.lower(), []).append(str(path))
 
     def set_stdout_file(self, data: bytes) -> None:
@@ -92,10 +92,8 @@ class Answer:
 
     def as_text(self, error: str = "") -> str:
         """Return the lines of text; after an error without those on the input."""
-        lines = [
-            words for number, (context, words) in enumerate(self._lines)
-            if not (context and self.quiet) and not (error and number in self._context_lines)
-        ]  # fmt: skip
+        omitted = (_INPUT, _FILE) if self.quiet else (_INPUT,) if error else ()
+        lines = [words for about, words in self._lines if about not in omitted]
         if self._verbose:
             lines += [
                 f"  {name}: {_format_number(number)}"
@@ -109,18 +107,15 @@ class Answer:
         files = {
             title: paths[0] if len(paths) == 1 else paths for title, paths in self._files.items()
         }
-        fields = {
-            **self._fields,
-            **({"numbers": self._numbers} if self._numbers else {}),
-            **({"files": files} if files else {}),
-            **({"warnings": self._warnings} if self._warnings else {}),
-            **({"error": error} if error else {}),
-            "exit_code": code,
-        }
+        optional: dict[str, Any] = {
+            "numbers": self._numbers, "files": files, "warnings": self._warnings, "error": error,
+        }  # fmt: skip
+        present = {name: value for name, value in optional.items() if value}
+        fields = {**self._fields, **present, "exit_code": code}
         return json.dumps(fields, indent=2, ensure_ascii=False, allow_nan=False) + "\n"
 
-    def _add(self, label: str, words: str, *, context: bool) -> None:
-        self._lines.append((context, f"{f'{label}:'.ljust(_LABEL_WIDTH - 1)} {words}"))
+    def _add(self, label: str, words: str, about: str) -> None:
+        self._lines.append((about, f"{f'{label}:'.ljust(_LABEL_WIDTH - 1)} {words}"))
         self._fields[label.lower().replace(" ", "_")] = words
 
 

@@ -17,9 +17,14 @@ class CommandArgument:
     is_file: bool = False  # whether it names a file
 
     @property
+    def name(self) -> str:
+        """Its long name, as typed."""
+        return self.names[-1]
+
+    @property
     def attribute(self) -> str:
         """Name of its value among the arguments as they are parsed."""
-        return self.names[-1].removeprefix("--").replace("-", "_")
+        return self.name.removeprefix("--").replace("-", "_")
 
 
 @dataclass(frozen=True)

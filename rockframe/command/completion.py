@@ -56,12 +56,9 @@ def script(shell: str) -> str:
     return {"bash": _bash, "zsh": _zsh, "fish": _fish}[shell]()
 
 
-def _options(command: Command) -> list[tuple[CommandArgument, str]]:
-    """Return the options of a command, each by its long name."""
+def _options(command: Command) -> list[CommandArgument]:
     values = (*command.arguments, *COMMON_OPTIONS)
-    return [
-        (argument, argument.names[-1]) for argument in values if argument.names[0].startswith("-")
-    ]
+    return [argument for argument in values if argument.name.startswith("-")]
 
 
 def _choices(argument: CommandArgument) -> str:
@@ -74,7 +71,7 @@ def _choices_without_option(command: Command) -> str:
     return " ".join(
         _choices(argument)
         for argument in command.arguments
-        if _choices(argument) and not argument.names[0].startswith("-")
+        if _choices(argument) and not argument.name.startswith("-")
     )
 
 
@@ -82,13 +79,13 @@ def _bash() -> str:
     cases: list[str] = []
     values: list[str] = []
     for command in COMMANDS:
-        names = " ".join([*(name for _, name in _options(command)), "--help"])
+        names = " ".join([*(option.name for option in _options(command)), "--help"])
         words = _choices_without_option(command)
         cases.append(f'            {command.name}) words="{words}" options="{names}" ;;')
         values += [
-            f'            "{command.name} {name}") words="{_choices(argument)}" ;;'
-            for argument, name in _options(command)
-            if _choices(argument)
+            f'            "{command.name} {option.name}") words="{_choices(option)}" ;;'
+            for option in _options(command)
+            if _choices(option)
         ]
     filled = {
         "COMMANDS": " ".join(command.name for command in COMMANDS),
@@ -105,8 +102,8 @@ def _zsh() -> str:
     cases = []
     for command in COMMANDS:
         words = [
-            f"'{name}[{_unquoted_help(argument)}]{_zsh_value(argument)}'"
-            for argument, name in _options(command)
+            f"'{option.name}[{_unquoted_help(option)}]{_zsh_value(option)}'"
+            for option in _options(command)
         ]
         choices = _choices_without_option(command)
         places = f"'*:choice:({choices})'" if choices else "'*:file:_files'"
@@ -132,9 +129,9 @@ def _fish() -> str:
     for command in COMMANDS:
         seen = f"complete -c rockframe -n '__fish_seen_subcommand_from {command.name}'"
         lines += [
-            f"{seen} -l {name.removeprefix('--')} -d '{_unquoted_help(argument)}'"
-            f"{_fish_value(argument)}"
-            for argument, name in _options(command)
+            f"{seen} -l {option.name.removeprefix('--')} -d '{_unquoted_help(option)}'"
+            f"{_fish_value(option)}"
+            for option in _options(command)
         ]
         choices = _choices_without_option(command)
         if choices:
@@ -150,7 +147,4 @@ def _fish_value(argument: CommandArgument) -> str:
 
 def _unquoted_help(argument: CommandArgument) -> str:
     """Return the help text of an option without characters that shells interpret."""
-    words = str(argument.settings.get("help", ""))
-    for mark in "'[]:":
-        words = words.replace(mark, "")
-    return words
+    return str(argument.settings.get("help", "")).translate(dict.fromkeys(map(ord, "'[]:")))

@@ -128,7 +128,7 @@ def _run_of(arguments: argparse.Namespace, answer: Answer) -> xr.Dataset:
             option for option in RUN_OPTIONS if getattr(arguments, option.attribute) is not None
         ]
         if typed:
-            words = f"this is a result, which has run; {typed[0].names[-1]} goes with a scene"
+            words = f"this is a result, which has run; {typed[0].name} goes with a scene"
             raise FileError(arguments.dataset, words)
         run = read_result(arguments.dataset)
     else:

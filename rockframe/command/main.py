@@ -42,7 +42,8 @@ def main(values: Sequence[str] | None = None) -> int:
         return _report_usage_error(typed, words)
     parser = build_parser()
     try:
-        arguments = parser.parse_args(typed)
+        unset = Namespace(quiet=False, verbose=False, json=False, debug=False)
+        arguments = parser.parse_args(typed, unset)
     except UsageError as problem:
         return _report_usage_error(typed, str(problem))
     except SystemExit:  # after help or version
@@ -51,8 +52,6 @@ def main(values: Sequence[str] | None = None) -> int:
         parser.print_help()
         return WRONG_INPUT
     arguments.typed = typed
-    for name in ("quiet", "verbose", "json", "debug"):
-        setattr(arguments, name, getattr(arguments, name, False))
     program = f"rockframe {arguments.command}"
     with _recorded_interrupts() as interrupts:
         try:

@@ -107,10 +107,16 @@ def execute_convert(arguments: argparse.Namespace, answer: Answer) -> int:
     elif file_format == "nc" and len(motions) > 1:
         suite = motions if isinstance(motions, MotionSuite) else MotionSuite(motions)
         outputs.write(arguments.output, _NETCDF_KIND, "Motions", suite.to_dataset().to_netcdf)
-    else:
-        _write(
-            _single_motion(motions, arguments), file_format, arguments.output, outputs, arguments
+    elif len(motions) > 1:
+        words = (
+            f"{len(motions)} motions do not fit into one file of this format: "
+            f"{_motion_list(motions)}; name one with --component, or a folder with --to, or a file "
+            "ending in .nc"
         )
+        raise FileError(arguments.output, words)
+    else:
+        (motion,) = motions.values()
+        _write(motion, file_format, arguments.output, outputs, arguments)
     answer.add_context("Motions", _motion_list(motions))
     return 0
 
@@ -150,18 +156,6 @@ def _file_names(motions: Mapping[str, GroundMotion], folder: Path, ending: str) 
             unique = f"{stem}_{number}"
         paths[name] = folder / f"{unique}{ending}"
     return paths
-
-
-def _single_motion(
-    motions: Mapping[str, GroundMotion], arguments: argparse.Namespace
-) -> GroundMotion:
-    if len(motions) == 1:
-        return next(iter(motions.values()))
-    words = (
-        f"{len(motions)} motions do not fit into one file of this format: {_motion_list(motions)}; "
-        "name one with --component, or a folder with --to, or a file ending in .nc"
-    )
-    raise FileError(arguments.output, words)
 
 
 def _motion_list(motions: Mapping[str, GroundMotion]) -> str:

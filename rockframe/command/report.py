@@ -86,13 +86,10 @@ def _write_report(
 def _code_checks(
     dataset: xr.Dataset, typed: Any, motions: object, target: TargetSpectrum | None
 ) -> list[CodeCheck]:
-    """Check the scene of a result by codes, under its motions or by a spectrum.
-
-    Checks that were typed replace those in the file of the scene. The latter are left out where
-    the motions are missing; the report mentions this.
-    """
+    """Check the scene of a result by codes, under its motions or by a spectrum."""
+    # checks that were typed replace those in the file of the scene
     listed = json.loads(str(dataset.attrs.get(PROJECT_ATTRIBUTE, "{}"))).get(CHECKS, ())
-    required = bool(typed)
+    required = bool(typed)  # others are left out without motions, which the report mentions
     typed = typed or [parse_check(text, CHECKS) for text in listed]
     if not typed:
         return []

@@ -105,7 +105,7 @@ def refuse_reading_options(arguments: argparse.Namespace, advice: str) -> None:
     for option in READING_OPTIONS:
         value = getattr(arguments, option.attribute, None)
         if value is not None:
-            msg = f"{option.names[-1]} {value}: this says how a record is read; {advice}"
+            msg = f"{option.name} {value}: this says how a record is read; {advice}"
             raise ComponentError(msg)
 
 

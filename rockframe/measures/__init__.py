@@ -7,7 +7,7 @@ from rockframe.measures.directions import principal_axes, rotated_spectrum
 from rockframe.measures.histories import fourier_spectrum, velocity_and_displacement
 from rockframe.measures.intensity import intensity_measures
 from rockframe.measures.response import response_spectrum
-from rockframe.suggestions import module_getattr
+from rockframe.suggestions import public_names
 
 __all__ = [
     "average_spectral_acceleration",
@@ -19,9 +19,5 @@ __all__ = [
     "velocity_and_displacement",
 ]
 
-if not TYPE_CHECKING:  # or no name would be unknown to type checkers
-    __getattr__ = module_getattr(__name__, __all__)
-
-
-def __dir__() -> list[str]:
-    return __all__
+if not TYPE_CHECKING:  # otherwise type checkers would accept any name
+    __getattr__, __dir__ = public_names(__name__, __all__)

@@ -20,7 +20,7 @@ from rockframe.plot._scene import scene, state
 from rockframe.plot._spectra import selection, spectra, suite
 from rockframe.plot._studies import critical_scale, free_decay, sweep
 from rockframe.plot._tradeoff import tradeoff
-from rockframe.suggestions import module_getattr
+from rockframe.suggestions import public_names
 
 __all__ = [
     "Animation",
@@ -57,8 +57,4 @@ __all__ = [
 ]
 
 if not TYPE_CHECKING:  # otherwise type checkers would accept any name
-    __getattr__ = module_getattr(__name__, __all__)
-
-
-def __dir__() -> list[str]:
-    return __all__
+    __getattr__, __dir__ = public_names(__name__, __all__)

@@ -164,13 +164,8 @@ class Animation:
     def _film(self) -> "FuncAnimation":
         from matplotlib.animation import FuncAnimation
 
-        def draw(number: int) -> list[Any]:
-            self._draw(number)
-            return []
-
-        return FuncAnimation(
-            self.figure, draw, frames=self.times.size, interval=1e3 / self._rate, blit=False
-        )
+        draw = cast("Any", self._draw)  # it returns artists only where these are blitted
+        return FuncAnimation(self.figure, draw, self.times.size, interval=1e3 / self._rate)
 
     def _repr_html_(self) -> str:
         self.close()  # otherwise the notebook would show the last frame too
@@ -241,7 +236,7 @@ def animation(
     heights = [height, 1.3, *[0.42] * (len(names) - 2)]
     sheet = make_sheet(
         ax, "animation", names, (max(width, 5.4), 0.6 + sum(heights)),
-        lambda figure: figure.subplots(len(names), 1, height_ratios=heights),
+        nrows=len(names), height_ratios=heights,
     )  # fmt: skip
     above, trace, *strips = sheet.panels
     response(shown_run.dataset, panels=("rotation", "contact"), rotation=rotation_unit, units=units,

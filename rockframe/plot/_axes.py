@@ -156,6 +156,13 @@ def intensity_label(values: xr.DataArray, study: xr.Dataset) -> str:
     return axis_label(words, str(values.attrs.get("units", "1")))
 
 
+def limit_state_label(state: xr.Dataset) -> str:
+    """Return the name of the limit state of a dataset, for a legend."""
+    if "limit_state" not in state.coords:
+        return "counted"
+    return as_label(str(state["limit_state"].item()))
+
+
 def axis_label(words: str, unit: str) -> str:
     """Append a unit to words, for an axis."""
     blank = "" if words.endswith("\n") else " "

@@ -59,7 +59,8 @@ RUN: Final = DatasetKind(
     ),
 )
 KINDS: Final[dict[str, DatasetKind]] = {}
-"""Kinds recognised by their variables, by the function that draws them; the first match counts."""
+"""Kinds recognised by their variables, by the function that draws them; the first match counts,
+in the order in which modules are imported: a cloud has the variables of a fragility too."""
 _REQUIRED_DATA: Final[dict[str, str]] = {}
 """The kind that each function draws, in words."""
 SWEEP_ATTRIBUTE: Final = "axes_json"
@@ -174,13 +175,9 @@ def figure_function_name(dataset: xr.Dataset) -> str:
         return "response"
     if "peak_relative_rotation" in dataset and dataset["peak_relative_rotation"].ndim > 0:
         return "sweep"
-    if (undrawn := _describe_undrawn(dataset)) is not None:
-        msg = f"no function of rf.plot draws {undrawn[0]}; {undrawn[1]}"
-        raise SchemaError(msg)
-    msg = (
-        "no function of rf.plot draws this dataset; known are results of runs, sweeps, studies "
-        "and comparisons"
-    )
+    known = "known are results of runs, sweeps, studies and comparisons"
+    what, way = _describe_undrawn(dataset) or ("this dataset", known)
+    msg = f"no function of rf.plot draws {what}; {way}"
     raise SchemaError(msg)
 
 

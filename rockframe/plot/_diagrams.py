@@ -1,6 +1,6 @@
 """Phase diagrams, moment-rotation diagrams and the energy balance of runs."""
 
-from typing import Any, Final
+from typing import Final
 
 import numpy as np
 import xarray as xr
@@ -14,6 +14,7 @@ from rockframe.plot._axes import (
     axis_label,
     figure_units,
     grid,
+    line_colour,
     text_colour,
     zero_line,
 )
@@ -86,10 +87,11 @@ def phase(
     reach, end = 0.0, np.inf
     for run in data:
         across = rotation_in(unit, run.dataset["rotation"], run.dataset)
-        up = _angular_velocity(run, unit)
+        left, right = overturning_angles(run.dataset)
+        up = run.dataset["angular_velocity"].to_numpy()
+        up = up / np.where(across < 0.0, left, right) if unit is None else unit.of(up)
         sheet.axes.plot(across, up, color=run.colour, ls=run.style, lw=0.9, label=run.label)
         sheet.axes.plot(across[:1], up[:1], "o", color=run.colour, markersize=5.0)
-        left, right = overturning_angles(run.dataset)
         ends = rotation_in(unit, np.array([-left, right]), run.dataset)
         sheet.axes.plot(ends, [0.0, 0.0], "x", color=text_colour(), markersize=6.0)
         reach, end = max(reach, float(np.abs(across).max())), min(end, float(np.abs(ends).min()))
@@ -165,7 +167,13 @@ def moment_rotation(
         given = _static_moments(given, largest)
     if isinstance(given, xr.Dataset) and "base_moment" in given and "angle" in given.dims:
         sheet = make_single_panel(ax, "moment_rotation", (5.6, 4.2))
-        _draw_static_moments(sheet.axes, given, angle_unit, moment_unit)
+        for name, words, colour, style in (
+            ("base_moment", "of the base", COLOURS[0], "-"),
+            ("restoring_moment", "that holds the body", COLOURS[1], "--"),
+        ):
+            angles, moments = angle_unit.of(given["angle"]), moment_unit.of(given[name])
+            sheet.axes.plot(angles, moments, style, color=colour, label=words)
+        add_legend(sheet.axes, title="moment", title_fontsize="small")
         sheet.set_title("", title)
     else:
         runs = read_runs(given, "moment_rotation", window)
@@ -236,22 +244,19 @@ def energies(
     _require_variables(data, ENERGIES, "energies")
     axis_units = figure_units(units, "energies")
     unit = axis_units.axis_unit(ENERGY, "kJ", energy=energy)
-    (whole_run,) = data
+    whole_run = data[0].dataset
     changes = {
-        name: unit.of(
-            whole_run.dataset[name]
-            - (whole_run.dataset[name][0] if name in _STATE_ENERGIES else 0.0)
-        )
+        name: unit.of(whole_run[name] - (whole_run[name][0] if name in _STATE_ENERGIES else 0.0))
         for name in ENERGIES
     }
     (part,) = read_runs(run, "energies", window)
-    first = int(np.searchsorted(whole_run.time, part.time[0]))
+    first = int(np.searchsorted(whole_run["time"], part.time[0]))
     window_slice = slice(first, first + part.time.size)
     sheet = make_single_panel(ax, "energies", (7.2, 3.9))
     order = [name for name in ENERGIES if name != "input_energy"]
     areas = [name for name in reversed(order) if np.any(changes[name] != 0.0)]
     names = {name: name.removesuffix("_energy").replace("_", " ") for name in ENERGIES}
-    colours = {name: COLOURS[number % len(COLOURS)] for number, name in enumerate(order)}
+    colours = {name: line_colour(number) for number, name in enumerate(order)}
     # energies below zero, such as that of gravity of a leaning body, are stacked below zero
     for sign in (1.0, -1.0):
         below = np.zeros(part.time.size)
@@ -274,15 +279,6 @@ def energies(
     return sheet.axes
 
 
-def _angular_velocity(run: Run, unit: DisplayUnit | None) -> Any:
-    """Return the angular velocity; without a unit over the overturning angle of its side."""
-    rate = run.dataset["angular_velocity"].to_numpy()
-    if unit is not None:
-        return unit.of(rate)
-    left, right = overturning_angles(run.dataset)
-    return rate / np.where(run.dataset["rotation"].to_numpy() < 0.0, left, right)
-
-
 def _static_moments(system: System, largest: float) -> xr.Dataset:
     left, right = system.setting.overturning_angles
     largest = read_positive(largest, "moment_rotation", "largest")
@@ -291,23 +287,6 @@ def _static_moments(system: System, largest: float) -> xr.Dataset:
         left, right = (left, 0.0) if wall.direction > 0.0 else (0.0, right)
     angles = np.linspace(-largest * left, largest * right, _ANGLE_COUNT)
     return system.moment_rotation((angles, str(ANGLE.unit)))
-
-
-def _draw_static_moments(
-    axes: Axes, moments: xr.Dataset, angle_unit: DisplayUnit, moment_unit: DisplayUnit
-) -> None:
-    for name, words, colour, style in (
-        ("base_moment", "of the base", COLOURS[0], "-"),
-        ("restoring_moment", "that holds the body", COLOURS[1], "--"),
-    ):
-        axes.plot(
-            angle_unit.of(moments["angle"]),
-            moment_unit.of(moments[name]),
-            style,
-            color=colour,
-            label=words,
-        )
-    add_legend(axes, title="moment", title_fontsize="small")
 
 
 def _rotation_on_support(run: xr.Dataset) -> xr.DataArray:

@@ -16,6 +16,7 @@ from rockframe.plot._axes import (
     grid,
     intensity_label,
     label_log_ticks,
+    limit_state_label,
     line_colour,
     line_style,
     variable_label,
@@ -47,19 +48,17 @@ _ROUNDING: Final = 1e-9
 """By which the peak of a run that ends at the overturning angle may lie below it."""
 
 
-def single_structure(dataset: xr.Dataset) -> xr.Dataset:
+def _single_structure(dataset: xr.Dataset, variable: str, function: str, named: str) -> xr.Dataset:
     """Return an analysis without axes of a single value; raise on several structures."""
-    dims = dataset["capacity_scale"].dims
-    structure_dims = [dim for dim in dims if dim not in ("limit_state", "motion")]
-    several = [f"{dim} ({dataset.sizes[dim]})" for dim in structure_dims if dataset.sizes[dim] > 1]
+    dims = [str(dim) for dim in dataset[variable].dims if dim not in ("limit_state", "motion")]
+    several = [dim for dim in dims if dataset.sizes[dim] > 1]
     if several:
         msg = (
-            f"rf.plot.dynamic_analysis draws one structure, this analysis is of several, by "
-            f"{', '.join(several)}; choose one, for example with "
-            f"analysis.isel({structure_dims[0]}=0)"
+            f"rf.plot.{function}: found several structures, by {', '.join(several)}; pick one, "
+            f"for example with {named}.isel({several[0]}=0)"
         )
         raise SchemaError(msg)
-    return dataset.squeeze(structure_dims)
+    return dataset.squeeze(dims)
 
 
 @draws(
@@ -104,13 +103,14 @@ def dynamic_analysis(
     >>> panels[0].get_ylabel()
     'peak ground acceleration [g]'
     """
-    data = single_structure(figure_data(dataset, "dynamic_analysis", units))
+    dataset = figure_data(dataset, "dynamic_analysis")
+    dataset = _single_structure(dataset, "capacity_scale", "dynamic_analysis", "analysis")
+    data = figure_data(dataset, "dynamic_analysis", units)
     names = chosen_panels(panels, _PANELS, "dynamic_analysis")
     widths = [_PANELS[name] for name in names]
     sheet = make_sheet(
         ax, "dynamic_analysis", names, (0.8 + 2.83 * sum(widths), 4.4),
-        lambda figure: figure.subplots(1, len(names), width_ratios=widths, sharey=True),
-        choice=True,
+        choice=True, ncols=len(names), width_ratios=widths, sharey=True,
     )  # fmt: skip
     drawn = dict(zip(names, sheet.panels, strict=True))
     measure = data[str(data.attrs.get("intensity", "scale"))]
@@ -131,7 +131,7 @@ def dynamic_analysis(
     for axes in sheet.panels if sheet.own_figure is None else sheet.panels[:1]:
         axes.set_ylabel(intensity_label(measure, data))
     sheet.add_common_legend()
-    verdict = verdict_of_analysis(single_structure(dataset))
+    verdict = verdict_of_analysis(dataset)
     sheet.set_title(figure_units(units, "dynamic_analysis").reader.convert_text(verdict), title)
     return sheet.panels
 
@@ -374,15 +374,7 @@ def annual_rate(
     'share of the rate [%]'
     """
     data = figure_data(dataset, "annual_rate", units)
-    several = [str(dim) for dim in data["annual_rate"].dims if dim != "limit_state"]
-    data = data.isel({dim: 0 for dim in several if data.sizes[dim] == 1})
-    wide = [dim for dim in several if dim in data.dims]
-    if wide:
-        msg = (
-            f"rf.plot.annual_rate: found several structures, by {', '.join(wide)}; pick one, for "
-            f"example with rates.isel({wide[0]}=0)"
-        )
-        raise SchemaError(msg)
+    data = _single_structure(data, "annual_rate", "annual_rate", "rates")
     if "limit_state" not in data.dims:
         data = data.expand_dims("limit_state")
     sheet = make_single_panel(ax, "annual_rate", (6.0, 4.0))
@@ -393,17 +385,12 @@ def annual_rate(
     edges = np.exp(np.append(logs - 0.5 * step, logs[-1] + 0.5 * step))
     for number in range(data.sizes["limit_state"]):
         rates = data.isel(limit_state=number)
-        state = (
-            as_label(str(rates["limit_state"].item()))
-            if "limit_state" in rates.coords
-            else "counted"
-        )
         rate = float(rates["annual_rate"])
         if np.isnan(rate):
             continue
         axes.stairs(
             100.0 * rates["rate_share"].to_numpy(), edges, color=line_colour(number), lw=1.4,
-            fill=True, alpha=0.35, label=f"{state}: {rate:.3g} a year",
+            fill=True, alpha=0.35, label=f"{limit_state_label(rates)}: {rate:.3g} a year",
         )  # fmt: skip
     axes.set(
         xscale="log", ylabel="share of the rate [%]",

@@ -8,10 +8,10 @@ import xarray as xr
 from rockframe.errors import SchemaError
 from rockframe.plot._axes import (
     COLOURS,
-    as_label,
     figure_units,
     grid,
     intensity_label,
+    limit_state_label,
     line_colour,
     line_style,
     unique_labels,
@@ -92,8 +92,7 @@ def probability(
     ['first-order index [-]', 'width [m]']
     """
     data = figure_data(dataset, "probability", units)
-    names = ("indices", "shares")
-    sheet = make_sheet(ax, "probability", names, (7.6, 3.6), lambda figure: figure.subplots(1, 2))
+    sheet = make_sheet(ax, "probability", ("indices", "shares"), (7.6, 3.6), ncols=2)
     left, right = sheet.panels
     names = [str(name).replace("_", " ") for name in data["parameter"].to_numpy()]
     indices = data["first_order_index"].fillna(0.0).to_numpy()
@@ -244,17 +243,24 @@ def fragility(
     measures = measures_of(data)
     states = [data.isel(limit_state=k) for k in range(data.sizes["limit_state"])]
     structures = [str(dim) for dim in states[0]["fragility_status"].dims]
-    _check_structures(states[0], structures, 1 if len(measures) > 1 else _MAX_STRUCTURES)
+    count = int(np.prod([data.sizes[dim] for dim in structures]))
+    max_count = 1 if len(measures) > 1 else _MAX_STRUCTURES
+    if count > max_count:
+        msg = (
+            f"rf.plot.fragility: found {count} structures, by {', '.join(structures)}; a figure "
+            f"shows {max_count}: pick some, for example with fragility.isel({structures[0]}=0)"
+        )
+        raise SchemaError(msg)
     if len(measures) == 1 and not structures:
         sheet = make_single_panel(ax, "fragility", (6.0, 4.1))
         _draw_curves(
-            sheet.axes, [(_limit_state_label(state), state) for state in states], measures[0]
+            sheet.axes, [(limit_state_label(state), state) for state in states], measures[0]
         )
     elif structures:
         sheet = _limit_state_panels(ax, states)
         for axes, state in zip(sheet.panels, states, strict=True):
             _draw_curves(axes, _labelled_structures(state, structures), measures[0])
-            axes.set_title(_limit_state_label(state))
+            axes.set_title(limit_state_label(state))
     else:
         fitted = FragilityStatus.FITTED
         drawn = [state for state in states if int(state["fragility_status"]) == fitted] or states[
@@ -269,23 +275,10 @@ def fragility(
     return sheet.axes if len(measures) == 1 and not structures else sheet.panels
 
 
-def _check_structures(state: xr.Dataset, structures: list[str], max_count: int) -> None:
-    count = int(np.prod([state.sizes[dim] for dim in structures]))
-    if count > max_count:
-        msg = (
-            f"rf.plot.fragility: found {count} structures, by {', '.join(structures)}; a figure "
-            f"shows {max_count}: pick some, for example with fragility.isel({structures[0]}=0)"
-        )
-        raise SchemaError(msg)
-
-
 def _limit_state_panels(ax: AxesLike, states: list[xr.Dataset]) -> Sheet:
     """Return a panel for each limit state."""
-    return make_sheet(
-        ax, "fragility", [_limit_state_label(state) for state in states],
-        (0.8 + 3.6 * len(states), 3.8),
-        lambda figure: figure.subplots(1, len(states)),
-    )  # fmt: skip
+    names = [limit_state_label(state) for state in states]
+    return make_sheet(ax, "fragility", names, (0.8 + 3.6 * len(names), 3.8), ncols=len(names))
 
 
 def _labelled_structures(state: xr.Dataset, structures: list[str]) -> list[tuple[str, xr.Dataset]]:
@@ -342,11 +335,5 @@ def _draw_contours(axes: Axes, state: xr.Dataset, measures: list[str]) -> None:
     for label in axes.clabel(lines, fontsize="small", fmt="%.2f", inline_spacing=2, colors="black"):
         label.set_bbox({"facecolor": "white", "alpha": 0.85, "edgecolor": "none", "pad": 0.6})
         label.set_rotation(0.0)
-    axes.set(xlabel=intensity_label(state[across], state), title=_limit_state_label(state))
+    axes.set(xlabel=intensity_label(state[across], state), title=limit_state_label(state))
     axes.set_ylabel(intensity_label(state[up], state))
-
-
-def _limit_state_label(state: xr.Dataset) -> str:
-    return (
-        as_label(str(state["limit_state"].item())) if "limit_state" in state.coords else "counted"
-    )

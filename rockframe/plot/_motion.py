@@ -56,25 +56,19 @@ def motions_title(values: list[LabelledMotion]) -> str:
 
 def labelled_motions(value: object, function: str) -> list[LabelledMotion]:
     """Read one or several motions."""
-    by_label: dict[str, Any] = {}
-    if isinstance(value, Mapping):
-        by_label = {str(key): ground_motion for key, ground_motion in value.items()}
-    elif isinstance(value, list | tuple):
-        names = [
-            display_name(
-                str(getattr(ground_motion, "name", "")), getattr(ground_motion, "history", ())
-            )
-            for ground_motion in value
-        ]
-        has_duplicates = len(set(names)) < len(names)
-        by_label = {
-            f"{name} ({number})" if has_duplicates else name: ground_motion
-            for number, (name, ground_motion) in enumerate(zip(names, value, strict=True), start=1)
-        }
-    labels: list[Any] = unique_labels(by_label) or [None]
-    motions: list[Any] = [*by_label.values()] or [value]
+    motions: list[Any] = [value]
+    if isinstance(value, Mapping | list | tuple) and value:
+        motions = [*value.values()] if isinstance(value, Mapping) else [*value]
     if not all(isinstance(ground_motion, GroundMotion) for ground_motion in motions):
         raise ComponentError(mismatch_message(function, value))
+    labels: list[Any] = [None]
+    if isinstance(value, Mapping):
+        labels = unique_labels(map(str, value))
+    elif isinstance(value, list | tuple):
+        names = [display_name(motion.name, motion.history) for motion in motions]
+        if len(set(names)) < len(names):
+            names = [f"{name} ({number})" for number, name in enumerate(names, start=1)]
+        labels = unique_labels(names)
     return [
         LabelledMotion(ground_motion, label, line_colour(number), line_style(number))
         for number, (label, ground_motion) in enumerate(zip(labels, motions, strict=True))
@@ -137,15 +131,13 @@ def motion(
         axis_units.axis_unit(VELOCITY, velocity=velocity),
         axis_units.axis_unit(LENGTH, displacement=displacement),
     )
-    histories = [_within_window(velocity_and_displacement(curve.motion), limits) for curve in data]
+    drawn = slice(*limits)
+    histories = [velocity_and_displacement(curve.motion).sel(time=drawn) for curve in data]
     vertical_history = None
     if len(data) == 1 and data[0].motion.si.vertical is not None:
-        vertical_history = _within_window(
-            velocity_and_displacement(data[0].motion, component="vertical"), limits
-        )
-    sheet = make_sheet(
-        ax, "motion", _QUANTITIES, (7.2, 5.4), lambda figure: figure.subplots(3, 1, sharex=True)
-    )
+        vertical_history = velocity_and_displacement(data[0].motion, component="vertical")
+        vertical_history = vertical_history.sel(time=drawn)
+    sheet = make_sheet(ax, "motion", _QUANTITIES, (7.2, 5.4), nrows=3, sharex=True)
     colours = (text_colour(), BLUE, GREEN)
     for axes, name, unit, colour in zip(sheet.panels, _QUANTITIES, row_units, colours, strict=True):
         if vertical_history is not None:
@@ -175,10 +167,6 @@ def motion(
         sheet.own_figure.align_ylabels(sheet.panels)
     sheet.set_title(motions_title(data), title)
     return sheet.panels
-
-
-def _within_window(history: xr.Dataset, limits: tuple[float, float]) -> xr.Dataset:
-    return history.sel(time=slice(*limits)) if np.isfinite(limits).any() else history
 
 
 def _mark_peak(axes: Axes, dataset: xr.Dataset, name: str, unit: DisplayUnit, colour: Any) -> None:
@@ -236,7 +224,7 @@ def velocity_pulse(
     unit = figure_units(units, "velocity_pulse").axis_unit(VELOCITY)
     sheet = make_sheet(
         ax, "velocity_pulse", ("the motion", "the residual motion"), (8.0, 4.6),
-        lambda figure: figure.subplots(2, 1, sharex=True, sharey=True),
+        nrows=2, sharex=True, sharey=True,
     )  # fmt: skip
     sheet.set_title(f"{pulse.extracted.name}: {pulse}", title)
     above, below = sheet.panels

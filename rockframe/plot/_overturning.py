@@ -28,8 +28,7 @@ from rockframe.units.display import UnitsLike
 
 _MAX_NAMED: Final = 8
 """Largest number of motions that are named in the legend."""
-_IMPACT_COLOURS: Final = (VERMILLION, BLUE, SKY, PURPLE, GREEN)
-MAP_COLOURS: Final = (PALE_BLUE, *_IMPACT_COLOURS)
+MAP_COLOURS: Final = (PALE_BLUE, VERMILLION, BLUE, SKY, PURPLE, GREEN)
 """Colours of runs that stand, and of those that overturn after no, one and more impacts."""
 
 
@@ -71,10 +70,7 @@ def overturning_map(
     up = data["relative_peak_ground_acceleration" if relative else "amplitude"]
     impact_count = int(data.attrs["impacts_told_apart"])
     count = data["impacts_before_overturning"].transpose("amplitude", "frequency")
-    colours = [
-        PALE_BLUE,
-        *(_IMPACT_COLOURS[min(k, len(_IMPACT_COLOURS) - 1)] for k in range(impact_count + 1)),
-    ]
+    colours = [MAP_COLOURS[min(k, len(MAP_COLOURS) - 1)] for k in range(impact_count + 2)]
     sheet = make_single_panel(ax, "overturning_map", (6.0, 4.3))
     axes = sheet.axes
     decided = overturns(data).transpose(*count.dims).notnull()
@@ -178,9 +174,8 @@ def _draw_by_slenderness(ax: AxesLike, function: str, values: xr.DataArray, **st
     """Draw a line for each motion over the size of the block, in a panel for each slenderness."""
     names = [f"H/B = {float(value):.3g}" for value in values["slenderness"]]
     sheet = make_sheet(
-        ax, function, names, (1.2 + 3.2 * len(names), 3.9),
-        lambda figure: figure.subplots(1, len(names), sharey=True),
-    )  # fmt: skip
+        ax, function, names, (1.2 + 3.2 * len(names), 3.9), ncols=len(names), sharey=True
+    )
     for place, axes in enumerate(sheet.panels):
         motions = unique_labels(map(str, values["motion"].to_numpy()))
         for number, colour in enumerate(colour_steps(values["motion"])):

@@ -1,7 +1,7 @@
 """The panels of figures: those of a new pyplot figure, or given ones."""
 
 import re
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from textwrap import wrap
 from typing import TYPE_CHECKING, Any, Final, TypeAlias, cast
@@ -95,7 +95,8 @@ class Panels(tuple[Any, ...]):
         return self[0].figure.figure
 
     def __repr__(self) -> str:
-        names = ", ".join(repr(_panel_name(axes)) for axes in self)
+        titles = (axes.get_ylabel() or axes.get_title() or axes.get_xlabel() for axes in self)
+        names = ", ".join(repr(" ".join(title.split())) for title in titles)
         return f"<{len(self)} panels: {names}>"
 
 
@@ -151,26 +152,31 @@ def make_sheet(
     function: str,
     names: Sequence[str],
     size: tuple[float, float],
-    make: Callable[[Any], Any],
     *,
     choice: bool = False,
+    **layout: Any,
 ) -> Sheet:
     """Take the given panels, or make new ones in the given figure or in a new one.
 
     With `choice`, the function has the argument `panels`, which messages then mention. A new figure
-    is one of pyplot, so that a notebook shows it and ``show()`` opens a window.
+    is one of pyplot, so that a notebook shows it and ``show()`` opens a window. The layout is that
+    of :meth:`matplotlib.figure.Figure.subplots`, or a mosaic.
     """
     from matplotlib.figure import FigureBase
 
     if len(names) > 1 and isinstance(ax, FigureBase):
-        own_figure = cast("Figure", ax)
-        return Sheet(Panels(np.ravel(make(own_figure))), own_figure)
+        return _new_sheet(ax, layout)
     if ax is not None:
         return Sheet(Panels(_checked_axes(ax, function, names, choice=choice)), None)
     from matplotlib import pyplot
 
-    figure = pyplot.figure(figsize=size, layout="constrained")
-    return Sheet(Panels(np.ravel(make(figure))), figure)
+    return _new_sheet(pyplot.figure(figsize=size, layout="constrained"), layout)
+
+
+def _new_sheet(figure: Any, layout: Mapping[str, Any]) -> Sheet:
+    if "mosaic" in layout:
+        return Sheet(Panels(figure.subplot_mosaic(**layout).values()), figure)
+    return Sheet(Panels(np.ravel(figure.subplots(**layout))), figure)
 
 
 def chosen_panels(panels: object, known: Iterable[str], function: str) -> tuple[str, ...]:
@@ -192,7 +198,7 @@ def chosen_panels(panels: object, known: Iterable[str], function: str) -> tuple[
 
 def make_single_panel(ax: "AxesLike", function: str, size: tuple[float, float]) -> Sheet:
     """Take the given panel, or make a figure with one; see :func:`make_sheet`."""
-    return make_sheet(ax, function, ("the figure",), size, lambda figure: figure.subplots())
+    return make_sheet(ax, function, ("the figure",), size)
 
 
 def _checked_axes(ax: Any, function: str, names: Sequence[str], *, choice: bool) -> "list[Axes]":
@@ -211,7 +217,3 @@ def _checked_axes(ax: Any, function: str, names: Sequence[str], *, choice: bool)
             msg += f"; panels={names[0]!r} draws one of them"
         raise ComponentError(msg)
     return cast("list[Axes]", panels)
-
-
-def _panel_name(axes: "Axes") -> str:
-    return " ".join((axes.get_ylabel() or axes.get_title() or axes.get_xlabel()).split())

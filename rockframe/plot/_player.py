@@ -4,7 +4,7 @@ import base64
 import json
 import re
 import zlib
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from html import escape
 from importlib import resources
 from pathlib import Path
@@ -237,7 +237,7 @@ def _layers(history: SceneHistory, shown_at: np.ndarray, store: _PackedNumbers) 
     """Return everything that is drawn, at all instants."""
     placements = [history.placement_at(int(place)) for place in shown_at]
     layouts = [history.builder.layout_at(at) for at in placements]
-    layers = [*_part_layers(history, layouts), *_contact_layers(layouts)]
+    layers = [*_part_layers(history, layouts)]
     layers += [
         _Layer(name, "point", GREEN, 1.0,
                np.array([history.builder.points_at(at, np.array([place])) for at in placements]))
@@ -265,52 +265,40 @@ def _layers(history: SceneHistory, shown_at: np.ndarray, store: _PackedNumbers) 
 
 
 def _part_layers(history: SceneHistory, layouts: Sequence[Layout]) -> Iterator[_Layer]:
-    """Return the parts of a scene, from the back to the front."""
+    """Return the parts of a scene and their contacts, from the back to the front."""
     upright, first = history.builder.layout_at(history.upright), layouts[0]
 
     def still(points: Array) -> Array:
         return np.repeat(points[None], len(layouts), axis=0)
 
+    def moving(points_of: Callable[[Layout], Any]) -> Array:
+        return np.array([points_of(layout) for layout in layouts])
+
     def each(name: str, shape: str, colour: str, fill: float) -> Iterator[_Layer]:
-        for k in range(len(getattr(first, name))):
-            points = np.array([getattr(layout, name)[k] for layout in layouts])
-            yield _Layer(name, shape, colour, fill, points)
+        for places in zip(*(getattr(layout, name) for layout in layouts), strict=True):
+            yield _Layer(name, shape, colour, fill, np.array(places))
 
     if first.soil is None:
-        yield _Layer(
-            "ground", "ground", "soft", 0.35, np.array([layout.ground for layout in layouts])
-        )
+        yield _Layer("ground", "ground", "soft", 0.35, moving(lambda layout: layout.ground))
     else:
-        yield _Layer(
-            "soil",
-            "ground",
-            SOIL_COLOUR,
-            0.35,
-            np.array([_surface_corners(layout) for layout in layouts]),
-        )
+        yield _Layer("soil", "ground", SOIL_COLOUR, 0.35, moving(_surface_corners))
     for outline in upright.bodies:
         yield _Layer("at rest", "dashes", "soft", 0.0, still(outline))
     if history.geometry.wall is not None:
         yield _Layer("wall", "outline", "soft", 0.35, still(history.geometry.wall))
     if first.cap is not None:
-        yield _Layer("cap", "outline", ORANGE, 0.3, np.array([layout.cap for layout in layouts]))
+        yield _Layer("cap", "outline", ORANGE, 0.3, moving(lambda layout: layout.cap))
     yield from each("lower_bodies", "outline", ORANGE, 0.25)
     yield from each("pads", "outline", "soft", 0.7)
     yield from each("frame_parts", "outline", BLUE, 0.25)
-    block = np.array([layout.block for layout in layouts])
-    yield _Layer("block", "outline", BLUE, 0.08 if first.members else 0.25, block)
+    fill = 0.08 if first.members else 0.25
+    yield _Layer("block", "outline", BLUE, fill, moving(lambda layout: layout.block))
     yield from each("members", "outline", BLUE, 0.3)
     yield from each("restrainers", "line", VERMILLION, 0.0)
-    yield _Layer(
-        "centre of mass", "cross", "ink", 1.0, np.array([layout.centres for layout in layouts])
-    )
-
-
-def _contact_layers(layouts: Sequence[Layout]) -> Iterator[_Layer]:
-    """Return the contacts: both ends of each line; a point is a line of zero length."""
-    for k in range(len(layouts[0].contacts)):
-        points = np.array([layout.contacts[k][[0, -1]] for layout in layouts])
-        yield _Layer("contact", "contact", CONTACT_COLOUR, 0.0, points)
+    yield _Layer("centre of mass", "cross", "ink", 1.0, moving(lambda layout: layout.centres))
+    for contacts in zip(*(layout.contacts for layout in layouts), strict=True):
+        ends = np.array([contact[[0, -1]] for contact in contacts])  # a point's coincide
+        yield _Layer("contact", "contact", CONTACT_COLOUR, 0.0, ends)
 
 
 def _largest_slips(run: xr.Dataset) -> list[tuple[str, xr.DataArray]]:

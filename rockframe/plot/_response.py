@@ -15,7 +15,6 @@ from rockframe.dynamics.events import ContactState
 from rockframe.errors import ComponentError, did_you_mean, short_repr
 from rockframe.plot._axes import (
     BLUE,
-    COLOURS,
     GREEN,
     GREY,
     METRES,
@@ -236,8 +235,7 @@ def response(
 
     sheet = make_sheet(
         ax, "response", names, (8.0, 1.0 + 1.15 * sum(heights)),
-        lambda figure: figure.subplots(len(names), 1, sharex=True, height_ratios=heights),
-        choice=True,
+        choice=True, nrows=len(names), sharex=True, height_ratios=heights,
     )  # fmt: skip
     drawn = dict(zip(names, sheet.panels, strict=True))
     for name, axes in drawn.items():
@@ -439,11 +437,10 @@ def _draw_vertical(axes: Axes, runs: list[Run], unit: DisplayUnit | None) -> Non
     name = "relative_vertical_displacement"
     over_settlement = unit is None and all(name in run.dataset for run in runs)
     metres = unit or METRES
-    for number, run in enumerate(runs):
+    for run in runs:
         displacement = run.dataset[name if over_settlement else "vertical_displacement"]
-        values = displacement.to_numpy() if over_settlement else metres.of(displacement)
-        colour = COLOURS[number % len(COLOURS)]
-        axes.plot(run.time, values, color=colour, linestyle=run.style, linewidth=1.1)
+        values = displacement if over_settlement else metres.of(displacement)
+        axes.plot(run.time, values, color=run.colour, linestyle=run.style, linewidth=1.1)
     zero_line(axes)
     if not over_settlement:
         of_stack = "\nof body 1" if any("body" in run.dataset.dims for run in runs) else ""

@@ -116,10 +116,8 @@ def scene(
     if with_legend:
         artist.draw_legend()
     sheet.set_title("", title)
-    if (
-        with_legend and sheet.own_figure is not None
-    ):  # the layout makes room for the legend iteratively
-        for _ in range(2):
+    if with_legend and sheet.own_figure is not None:
+        for _ in range(2):  # the layout makes room for the legend iteratively
             sheet.panels.figure.draw_without_rendering()
             if ax is None:
                 _fit_height_to_legend(sheet.axes)

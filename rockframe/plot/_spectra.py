@@ -100,13 +100,10 @@ def spectra(
         )
         for curve in data
     ]
-
-    def make(figure: Any) -> Any:
-        mosaic = [["history", "history"], ["response", "fourier"]]
-        drawn = figure.subplot_mosaic(mosaic, height_ratios=[1.0, 1.7])
-        return [drawn[name] for name in _PANELS]
-
-    sheet = make_sheet(ax, "spectra", _PANELS, (7.2, 5.4), make)
+    sheet = make_sheet(
+        ax, "spectra", _PANELS, (7.2, 5.4),
+        mosaic=[["history", "history"], ["response", "fourier"]], height_ratios=[1.0, 1.7],
+    )  # fmt: skip
     for curve, history, response, fourier in results:
         name = f"{_VARIABLE_PREFIX[str(component)]}ground_acceleration"
         colour = text_colour() if curve.label is None else curve.colour
@@ -128,7 +125,7 @@ def spectra(
 def _draw_response_spectra(
     axes: Axes, dataset: xr.Dataset, unit: DisplayUnit, curve: LabelledMotion
 ) -> None:
-    drawn = dataset.isel(period=np.flatnonzero(dataset["period"].to_numpy() > 0.0))
+    drawn = dataset.sel(period=dataset["period"] > 0.0)
     ratios = dataset["damping_ratio"].to_numpy().tolist()
     for place, ratio in enumerate(ratios):
         damping = f"{100.0 * ratio:g} %"
@@ -247,7 +244,7 @@ def suite(
     unit = figure_units(units, "suite").axis_unit(ACCELERATION, "g", acceleration=acceleration)
     labelled = {curve.label or motions_title(data): curve.motion for curve in data}
     dataset = response_spectrum(labelled, periods, damping_ratio, component=component)
-    dataset = dataset.isel(period=np.flatnonzero(dataset["period"].to_numpy() > 0.0))
+    dataset = dataset.sel(period=dataset["period"] > 0.0)
     values = unit.of(
         dataset["pseudo_spectral_acceleration"].squeeze("damping_ratio").transpose("motion", ...)
     )
@@ -353,9 +350,9 @@ def selection(
     count = dataset.sizes["motion"]
     sheet = make_sheet(
         ax, "selection", ("spectra", "misfits"), (8.6, max(4.0, min(9.0, 1.0 + 0.16 * count))),
-        lambda figure: figure.subplots(1, 2, width_ratios=[1.7, 1.0]),
+        ncols=2, width_ratios=[1.7, 1.0],
     )  # fmt: skip
-    drawn = dataset.isel(period=np.flatnonzero(dataset["period"].to_numpy() > 0.0))
+    drawn = dataset.sel(period=dataset["period"] > 0.0)
     period = drawn["period"].to_numpy()
     spectra, misfits = sheet.panels
     for place in range(count):

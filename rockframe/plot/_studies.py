@@ -220,7 +220,7 @@ def free_decay(
         times = [measured, fitted, measured]
     sheet = make_sheet(
         ax, "free_decay", _PANELS, (7.2, 4.4),
-        lambda figure: figure.subplots(2, 1, sharex=True, height_ratios=(2.2, 1)),
+        nrows=2, sharex=True, height_ratios=(2.2, 1),
     )  # fmt: skip
     above, below = sheet.panels
     dots = "-" if histories else "o"

@@ -23,7 +23,7 @@ _SPREAD: Final = 0.4
 """Height over which the accuracies of a model are spread, over the distance between models."""
 _MARKERS: Final = "osD^vP*h"
 _SMALL_ROTATIONS: Final = "small rotations"
-_ERROR_LABEL: Final = "largest error of the rotation{}over its peak [-]"
+_ERROR_LABEL: Final = "largest error of the rotation\nover its peak [-]"
 
 
 @draws(
@@ -60,8 +60,7 @@ def tradeoff(
     models = [str(name) for name in dataset["model"].to_numpy()]
     sheet = make_sheet(
         ax, "tradeoff", ("integration", "model and integration"),
-        (11.0, max(3.4, 2.4 + 0.4 * len(models))),
-        lambda figure: figure.subplots(1, 2),
+        (11.0, max(3.4, 2.4 + 0.4 * len(models))), ncols=2,
     )  # fmt: skip
     axes = sheet.panels
     colours = colormaps["viridis"](np.linspace(0.1, 0.8, len(models)))
@@ -78,7 +77,7 @@ def tradeoff(
     for panel in axes:
         panel.set(xscale="log")
         grid(panel)
-    axes[0].set(yscale="log", xlabel="time of a run [ms]", ylabel=_ERROR_LABEL.format("\n"))
+    axes[0].set(yscale="log", xlabel="time of a run [ms]", ylabel=_ERROR_LABEL)
     axes[0].set_title("integration: low and left is better")
     axes[0].xaxis.set_major_locator(LogLocator(subs=(1.0, 2.0, 5.0)))
     axes[0].xaxis.set_major_formatter(StrMethodFormatter("{x:g}"))
@@ -87,7 +86,7 @@ def tradeoff(
         yticks=range(len(models)),
         yticklabels=unique_labels(models),
         ylim=(-0.7, len(models) - 0.3),
-        xlabel=_ERROR_LABEL.format("\n"),
+        xlabel=_ERROR_LABEL,
         title="with that of the model: left is better",
     )
     _mark_small_errors(axes[1], dataset["history_error"].to_numpy())

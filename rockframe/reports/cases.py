@@ -95,17 +95,14 @@ def _split_columns(columns: Iterable[_Column]) -> list[list[_Column]]:
 
 def _verdict(dataset: xr.Dataset, place: int) -> str:
     """Return the verdict on a case, or the status of an unfinished run."""
-    status = dataset["status"]
-    of_case = status.isel(dict.fromkeys(status.dims, 0)).copy()
-    of_case.values = status.to_numpy().ravel()[place]
-    if of_case.item() != RunStatus.COMPLETED:
-        return (
-            "overturned"
-            if overturned_from_status(of_case.to_numpy()) == 1.0
-            else format_value(of_case)
-        )
-    passed = dataset["overturned"].to_numpy().ravel()[place] == 1
-    return "overturned" if passed else "did not overturn"
+    at = _indices(dataset["status"], place)
+    status = dataset["status"].isel(at)
+    overturned = bool(overturned_from_status(status.to_numpy()) == 1.0)
+    if status.item() == RunStatus.COMPLETED:
+        overturned = bool(dataset["overturned"].isel(at) == 1)
+    elif not overturned:
+        return format_value(status)
+    return "overturned" if overturned else "did not overturn"
 
 
 def _table(
@@ -188,7 +185,7 @@ def capacity_table(dataset: xr.Dataset, units: DisplayUnits) -> Iterator[str]:
     }
     rows = list[list[str]]()
     for place in order.tolist():
-        at = dict(zip(capacity.dims, np.unravel_index(place, capacity.shape), strict=True))
+        at = _indices(capacity, place)
         numbers = [format_value(flat[variable].isel(at), units) for variable in names]
         rows.append([*label_texts(dataset, place, units, name).values(), *numbers])
     heads = [str(head).replace("_", " ") for head in (*capacity.dims, *names)]
@@ -211,10 +208,17 @@ def order_from_worst(dataset: xr.Dataset) -> np.ndarray:
 
 def label_values(dataset: xr.Dataset, place: int, of: str = "status") -> dict[str, Any]:
     """Return the labels of a value of a variable by its place; usually those of a case."""
-    status = dataset[of]
-    places = np.unravel_index(place, status.shape)
-    return {str(dim): status[dim].to_numpy()[k].item() if dim in status.coords else int(k)
-            for dim, k in zip(status.dims, places, strict=True)}  # fmt: skip
+    values = dataset[of]
+    return {
+        dim: values[dim].to_numpy()[k].item() if dim in values.coords else k
+        for dim, k in _indices(values, place).items()
+    }
+
+
+def _indices(values: xr.DataArray, place: int) -> dict[str, int]:
+    """Return the indices of a value of an array by its place."""
+    indices = map(int, np.unravel_index(place, values.shape))
+    return dict(zip(map(str, values.dims), indices, strict=True))
 
 
 def label_texts(

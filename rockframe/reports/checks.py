@@ -131,10 +131,6 @@ class CodeCheck:
     >>> check = rf.codes.asce_7_22(cabinet, spectral_acceleration=1.0, importance=1.5)
     >>> check.value("S_DS"), check.passed["tipping"]
     (1.0, False)
-    >>> len([*check.banners(DisplayUnits())]), [title for title, _ in check.tables(DisplayUnits())]
-    (1, ['Factors', 'Forces', 'Statics, without anchors', 'Left out'])
-    >>> "S_DS" in check.section(DisplayUnits())
-    True
     >>> check.report(f"{tempfile.mkdtemp()}/check.html").name
     'check.html'
     """
@@ -194,52 +190,6 @@ class CodeCheck:
         }
         return html_summary(escape(self.title), rows)
 
-    def banners(self, units: DisplayUnits) -> Iterator[str]:
-        """Return each verdict with demand, capacity and clause, as pages show it.
-
-        Parameters
-        ----------
-        units : DisplayUnits
-            Units of the numbers.
-
-        Yields
-        ------
-        str
-            HTML.
-        """
-        for verdict in self.verdicts:
-            text, kind = _OUTCOMES[verdict.passed]
-            words = f"{units.convert_text(verdict.words)} [{verdict.source}]. {self.code}."
-            yield page.banner(f"{verdict.title}: {text}", words, kind)
-
-    def tables(self, units: DisplayUnits) -> Iterator[tuple[str, list[str]]]:
-        """Return titles and tables of the numbers, and of what is neglected, as pages show them.
-
-        Parameters
-        ----------
-        units : DisplayUnits
-            Units of the numbers.
-
-        Yields
-        ------
-        tuple of str and list of str
-            HTML.
-        """
-        head = ("", "value", "", "source")
-        for title, several in self.lines.items():
-            cells = [
-                (
-                    line.symbol,
-                    with_superscripts(line.written(units)),
-                    units.convert_text(line.words),
-                    line.source,
-                )
-                for line in several
-            ]
-            yield title, [page.parameter_table(cells, head=head)]
-        if self.notes:
-            yield "Left out", [page.numbered_list(map(units.convert_text, self.notes))]
-
     def report(
         self, path: "str | PathLike[str]", *, units: UnitsLike = None, overwrite: bool = False
     ) -> Path:
@@ -269,33 +219,48 @@ class CodeCheck:
         """
         chosen = display_units(units, owner="CodeCheck.report")
         body = [f"<h1>{escape(self.title)}</h1>", page.paragraph(self.code, kind="soft")]
-        body += self._scene_paragraph(chosen)
-        body += self.banners(chosen)
-        body += [page.section(title, pieces) for title, pieces in self.tables(chosen)]
+        body += [*_scene_paragraph(self, chosen), *verdict_banners(self, chosen)]
+        body += [page.section(title, [piece]) for title, piece in _tables(self, chosen)]
         content = page.html_page(self.title, body).encode()
         return write_file(path, FILE_KIND, content, overwrite=overwrite)
 
-    def _scene_paragraph(self, units: DisplayUnits) -> list[str]:
-        words = units.convert_text(self.scene)
-        return [page.paragraph(f"Checked: {words}.")] if words else []
 
-    def section(self, units: DisplayUnits) -> str:
-        """Return its section of a larger page.
+def verdict_banners(check: CodeCheck, units: DisplayUnits) -> Iterator[str]:
+    """Return each verdict with demand, capacity and clause."""
+    for verdict in check.verdicts:
+        text, kind = _OUTCOMES[verdict.passed]
+        words = f"{units.convert_text(verdict.words)} [{verdict.source}]. {check.code}."
+        yield page.banner(f"{verdict.title}: {text}", words, kind)
 
-        Parameters
-        ----------
-        units : DisplayUnits
-            Units of the numbers.
 
-        Returns
-        -------
-        str
-            HTML.
-        """
-        pieces = [page.paragraph(f"{self.title}. {self.code}."), *self._scene_paragraph(units)]
-        for title, inner in self.tables(units):
-            pieces += [page.subtitle(title), *inner]
-        return page.section(f"Check by {self.code.split(',')[0]}", pieces)
+def check_section(check: CodeCheck, units: DisplayUnits) -> str:
+    """Return the section on a check of a larger page."""
+    pieces = [page.paragraph(f"{check.title}. {check.code}."), *_scene_paragraph(check, units)]
+    for title, piece in _tables(check, units):
+        pieces += [page.subtitle(title), piece]
+    return page.section(f"Check by {check.code.split(',')[0]}", pieces)
+
+
+def _scene_paragraph(check: CodeCheck, units: DisplayUnits) -> list[str]:
+    words = units.convert_text(check.scene)
+    return [page.paragraph(f"Checked: {words}.")] if words else []
+
+
+def _tables(check: CodeCheck, units: DisplayUnits) -> Iterator[tuple[str, str]]:
+    """Return titles and tables of the numbers, and of what is neglected."""
+    for title, several in check.lines.items():
+        cells = [
+            (
+                line.symbol,
+                with_superscripts(line.written(units)),
+                units.convert_text(line.words),
+                line.source,
+            )
+            for line in several
+        ]
+        yield title, page.parameter_table(cells, head=("", "value", "", "source"))
+    if check.notes:
+        yield "Left out", page.numbered_list(map(units.convert_text, check.notes))
 
 
 def read_checks(value: object, owner: str) -> list[CodeCheck]:

@@ -251,20 +251,17 @@ def _part_tables(title: str, part: Component, units: DisplayUnits) -> Iterator[s
     yield page.parameter_table(_parameter_rows(part, units))
     described: dict[str, Any] = dict(part.to_dict())
     for name, value in described.items():
-        if isinstance(value, dict):
-            yield from _part_tables(
-                f"{name.capitalize()}: {value['type']}", component_from_dict(value), units
-            )
+        which = {"bodies": "Body"}.get(name, name.removesuffix("s").capitalize())
         for number, inner_part in enumerate(_inner_parts(value), 1):
-            which = {"bodies": "Body"}.get(name, name.removesuffix("s").capitalize())
-            yield from _part_tables(
-                f"{which} {number}: {inner_part['type']}", component_from_dict(inner_part), units
-            )
+            named = f"{which} {number}" if isinstance(value, list) else name.capitalize()
+            title = f"{named}: {inner_part['type']}"
+            yield from _part_tables(title, component_from_dict(inner_part), units)
 
 
 def _inner_parts(value: object) -> list[Any]:
-    """Return the descriptions of parts in an argument of a part."""
-    return [item for item in value if isinstance(item, dict)] if isinstance(value, list) else []
+    """Return the description of a part in an argument of a part, or those of several."""
+    several = value if isinstance(value, list) else [value]
+    return [item for item in several if isinstance(item, dict)]
 
 
 def _parameter_rows(part: Component, units: DisplayUnits) -> list[tuple[str, str, str]]:
@@ -277,7 +274,7 @@ def _parameter_rows(part: Component, units: DisplayUnits) -> list[tuple[str, str
             _meaning(declared[name]) if name in declared else "",
         )
         for name, value in part.to_dict().items()
-        if name != "type" and not isinstance(value, dict) and not _inner_parts(value)
+        if name != "type" and not _inner_parts(value)
     ]
 
 

@@ -3,6 +3,7 @@
 import json
 import warnings
 from collections.abc import Iterator, Mapping, Sequence
+from contextlib import suppress
 from typing import Any
 
 import numpy as np
@@ -44,20 +45,17 @@ def verdict_sections(
     if fit:
         verdict.append(page.banner("Fit", with_superscripts(units.convert_text(fit)), ""))
     yield page.section("Verdict", [*verdict, *by_codes])
-    figure = _figure(dataset, units)
-    if figure:
-        yield page.section("Figure", [figure])
-    capacities = [*capacity_table(dataset, units)]
-    if capacities:
-        yield page.section("Capacities", capacities)
-    if _is_sweep(dataset):
-        yield page.section("Cases", case_tables(dataset, units))
     scalars = scalar_rows(dataset, units=units)
-    if scalars:
-        yield page.section("Numbers", [page.parameter_table(scalars)])
-    limits = _limit_state_tables(dataset, units)
-    if limits:
-        yield page.section("Limit states", limits)
+    for title, pieces in (
+        ("Figure", _figure(dataset, units)),
+        ("Capacities", capacity_table(dataset, units)),
+        ("Cases", case_tables(dataset, units) if _is_sweep(dataset) else ()),
+        ("Numbers", [page.parameter_table(scalars)] if scalars else ()),
+        ("Limit states", _limit_state_table(dataset, units)),
+    ):
+        found = [*pieces]
+        if found:
+            yield page.section(title, found)
 
 
 def worst_case(
@@ -162,20 +160,18 @@ def _sliding_words(dataset: xr.Dataset) -> str:
     return ", some would slide" if would is not None and bool((would == 1.0).any()) else ""
 
 
-def _figure(dataset: xr.Dataset, units: DisplayUnits) -> str:
+def _figure(dataset: xr.Dataset, units: DisplayUnits) -> Iterator[str]:
     """Draw a dataset with the function for its kind, if there is one."""
-    try:
+    with suppress(RockframeError):
         drawn = getattr(plot, figure_function_name(dataset))(dataset, units=units.words)
-    except RockframeError:
-        return ""
-    return page.captioned_figure(drawn, str(dataset.attrs.get("title", "The study")) + ".")
+        yield page.captioned_figure(drawn, str(dataset.attrs.get("title", "The study")) + ".")
 
 
-def _limit_state_tables(dataset: xr.Dataset, units: DisplayUnits) -> list[str]:
+def _limit_state_table(dataset: xr.Dataset, units: DisplayUnits) -> Iterator[str]:
     """Return all numbers of a fragility: a row for each, with a column for each limit state."""
     dim = "limit_state"
     if dim not in dataset.dims:
-        return []
+        return
     rows = list[list[str]]()
     for name, values in dataset.data_vars.items():
         if values.dims == (dim,):
@@ -183,4 +179,4 @@ def _limit_state_tables(dataset: xr.Dataset, units: DisplayUnits) -> list[str]:
             rows.append([words, *(format_value(values.isel({dim: k}), units)
                                   for k in range(dataset.sizes[dim]))])  # fmt: skip
     heads = [units.convert_text(str(label)) for label in dataset[dim].to_numpy()]
-    return [page.number_table(rows, ["", *heads])]
+    yield page.number_table(rows, ["", *heads])

@@ -23,7 +23,7 @@ from rockframe.errors import (
 from rockframe.motion import GroundMotion
 from rockframe.plot._fonts import warn_of_letters_once
 from rockframe.reports import page, sections, studies
-from rockframe.reports.checks import CodeCheck, read_checks
+from rockframe.reports.checks import CodeCheck, check_section, read_checks, verdict_banners
 from rockframe.reports.motions import (
     TargetComparison,
     available_motions,
@@ -155,7 +155,7 @@ def report(
     chosen = display_units(units, owner=_OWNER)
     comparison = read_target(target, motions, _OWNER)
     checked = read_checks(checks, _OWNER)
-    by_codes = [banner for check in checked for banner in check.banners(chosen)]
+    by_codes = [banner for check in checked for banner in verdict_banners(check, chosen)]
     by_codes = by_codes or [*about.missing_checks_banner()]
     source = str(dataset.encoding.get("source", ""))
     read = [source] if source else []
@@ -189,7 +189,7 @@ def report(
             spectra = spectra_section(available, comparison, chosen)
             body.append(page.section("Ground motions", spectra))
         body += _study_sections(dataset, available, about, chosen)
-    body += [check.section(chosen) for check in checked]
+    body += [check_section(check, chosen) for check in checked]
     made = str(dataset.attrs.get("history", "")).splitlines()[-1:]
     head = [f"<h1>{escape(heading)}</h1>", *(page.paragraph(text, kind="soft") for text in made)]
     file = Path(source).name

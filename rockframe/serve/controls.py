@@ -22,8 +22,8 @@ class Control:
     high: float
     step: float  # of the slider
     default: float
-    unit: str = ""
-    of: str = ""  # the choice to which it belongs; always shown unless given
+    unit: str
+    group: str  # on the page
 
     def quantity(self, value: float) -> str | float:
         """Write a value for components and files."""
@@ -31,16 +31,16 @@ class Control:
 
 
 CONTROLS: Final = (
-    Control("width", "Width", 0.1, 5.0, 0.05, 0.8, "m"),
-    Control("height", "Height", 0.2, 20.0, 0.1, 3.2, "m"),
-    Control("mass", "Mass", 0.05, 200.0, 0.05, 5.5, "t"),
+    Control("width", "Width", 0.1, 5.0, 0.05, 0.8, "m", "body"),
+    Control("height", "Height", 0.2, 20.0, 0.1, 3.2, "m", "body"),
+    Control("mass", "Mass", 0.05, 200.0, 0.05, 5.5, "t", "body"),
     Control("pad_stiffness", "Stiffness of one pad", 0.1, 500.0, 0.1, 12.0, "MN/m", "pads"),
     Control("pad_damping", "Damping ratio of the pads", 0.0, 1.0, 0.01, 0.1, "", "pads"),
     Control("soil_stiffness", "Stiffness of the bed", 0.1, 500.0, 0.1, 9.0, "MPa", "soil"),
     Control("soil_damping", "Damping ratio of the bed", 0.0, 1.0, 0.01, 0.2, "", "soil"),
     Control("amplitude", "Amplitude of the pulse", 0.1, 20.0, 0.1, 5.0, "m/s^2", "pulse"),
     Control("frequency", "Frequency of the pulse", 0.1, 10.0, 0.1, 2.0, "Hz", "pulse"),
-    Control("scale", "Scale of the motion", 0.1, 10.0, 0.1, 1.0),
+    Control("scale", "Scale of the motion", 0.1, 10.0, 0.1, 1.0, "", "motion"),
 )
 BASES: Final = {"ground": "Rigid ground", "pads": "Pads", "soil": "Bed of springs"}
 PULSES: Final = {"sine_pulse": "Sine pulse", "cosine_pulse": "Cosine pulse"}

@@ -29,12 +29,12 @@ class TrialOutcome:
 def trial_page(choice: TrialScene, motions: Mapping[str, str], outcome: str) -> str:
     """Return the whole page."""
     groups = [
-        _fieldset("Body", "", _number_inputs(choice, "", without=("scale",))),
+        _fieldset("Body", "", _number_inputs(choice, "body")),
         _fieldset("Base", "", [_select("base", BASES, choice.base)]),
         _fieldset("Pads", "pads", _number_inputs(choice, "pads"), shown=choice.base == "pads"),
         _fieldset("Bed", "soil", _number_inputs(choice, "soil"), shown=choice.base == "soil"),
         _fieldset("Motion", "", [
-            _select("motion", motions, choice.motion), *_number_inputs(choice, "", only="scale"),
+            _select("motion", motions, choice.motion), *_number_inputs(choice, "motion"),
         ]),
         _fieldset("Pulse", "pulse", _number_inputs(choice, "pulse"), shown=choice.motion in PULSES),
     ]  # fmt: skip
@@ -90,13 +90,11 @@ def _select(name: str, known: Mapping[str, str], chosen: str) -> str:
     return f'<label>{title}<select name="{name}">{options}</select></label>'
 
 
-def _number_inputs(
-    choice: TrialScene, of: str, *, only: str = "", without: Sequence[str] = ()
-) -> list[str]:
+def _number_inputs(choice: TrialScene, group: str) -> list[str]:
     return [
         _number_input(control, choice.numbers[control.name])
         for control in CONTROLS
-        if control.of == of and control.name not in without and only in ("", control.name)
+        if control.group == group
     ]
 
 

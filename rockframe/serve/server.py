@@ -34,6 +34,7 @@ _MAX_FIELDS: Final = 50
 _TIMEOUT: Final = 30.0
 """Time after which a silent client is disconnected [s]."""
 _HTML: Final = "text/html; charset=utf-8"
+_PLAIN: Final = "text/plain; charset=utf-8"
 _FILES: Final = {page.STYLE: "text/css", page.SCRIPT: "text/javascript"}
 _POLICY: Final = (
     "default-src 'none'; style-src 'self'; script-src 'self'; connect-src 'self'; "
@@ -46,20 +47,7 @@ _PLAYER_POLICY: Final = (
 
 
 class Server(ThreadingHTTPServer):
-    """A server of the page at a port of this machine.
-
-    Parameters
-    ----------
-    port : int
-        Port of the loopback address; 0 for a free one.
-    record : NamedRecord, optional
-        A record to offer besides pulses and the example.
-
-    Raises
-    ------
-    ComponentError
-        The port is out of range, or is in use.
-    """
+    """A server of the page at a port of this machine, or at any free one for port 0."""
 
     daemon_threads = True
     allow_reuse_address = sys.platform != "win32"
@@ -118,13 +106,13 @@ class _RequestHandler(BaseHTTPRequestHandler):
         """Answer a request."""
         if not self._is_same_origin():
             words = "This page answers to its own address on this machine only.\n"
-            self._send(HTTPStatus.FORBIDDEN, "text/plain; charset=utf-8", words)
+            self._send(HTTPStatus.FORBIDDEN, _PLAIN, words)
             return
         try:
             target = urlsplit(self.path)
         except ValueError as problem:
             words = f"This is no address of a page: {problem}\n"
-            self._send(HTTPStatus.BAD_REQUEST, "text/plain; charset=utf-8", words)
+            self._send(HTTPStatus.BAD_REQUEST, _PLAIN, words)
             return
         if target.path in _FILES:
             file = resources.files("rockframe.serve") / target.path.removeprefix("/")
@@ -137,7 +125,7 @@ class _RequestHandler(BaseHTTPRequestHandler):
         }  # fmt: skip
         if target.path not in answers:
             words = f"There is no such page; the page is at {self.server.address}\n"
-            self._send(HTTPStatus.NOT_FOUND, "text/plain; charset=utf-8", words)
+            self._send(HTTPStatus.NOT_FOUND, _PLAIN, words)
             return
         try:
             query = dict(parse_qsl(target.query, max_num_fields=_MAX_FIELDS,
@@ -188,11 +176,10 @@ class _RequestHandler(BaseHTTPRequestHandler):
 
     def _send_scene(self, query: Mapping[str, str]) -> None:
         choice, faults = read_choice(query, self.server.record)
-        plain = "text/plain; charset=utf-8"
         if faults:
-            self._send(HTTPStatus.BAD_REQUEST, plain, "\n".join(faults) + "\n")
+            self._send(HTTPStatus.BAD_REQUEST, _PLAIN, "\n".join(faults) + "\n")
         else:
-            self._send(HTTPStatus.OK, plain, choice.toml(self.server.record))
+            self._send(HTTPStatus.OK, _PLAIN, choice.toml(self.server.record))
 
     def _send(self, status: HTTPStatus, kind: str, text: str, policy: str = _POLICY) -> None:
         data = text.encode()

@@ -187,22 +187,14 @@ def _read_sweep(file: TomlFile) -> dict[str, Any]:
     table = file.table((SWEEP,), file.values.get(SWEEP, {}))
     if table is None or not check_table(file, (SWEEP,), table, sweep_keys()):
         return {}
+    if KNOWN in table:  # stores, relative to the folder of the file
+        paths = table[KNOWN] if isinstance(table[KNOWN], list) else [table[KNOWN]]
+        table[KNOWN] = [file.path_of(path) if isinstance(path, str) else path for path in paths]
     try:
-        return build_run_objects(file, (SWEEP,), _resolve_stores(file, table))
+        return build_run_objects(file, (SWEEP,), table)
     except RockframeError as problem:
         file.add_fault((SWEEP,), str(problem))
         return {}
-
-
-def _resolve_stores(file: TomlFile, table: dict[str, Any]) -> dict[str, Any]:
-    """Return a table with the paths of known stores, relative to the folder of the file."""
-    if KNOWN not in table:
-        return table
-    value = table[KNOWN]
-    paths = value if isinstance(value, list) else [value]
-    return table | {
-        KNOWN: [file.path_of(path) if isinstance(path, str) else path for path in paths]
-    }
 
 
 def _read_path(file: TomlFile, name: str) -> Path | None:

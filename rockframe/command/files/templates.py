@@ -22,6 +22,7 @@ from rockframe.components.parameters import REQUIRED, Choice, Count, Declared, F
 from rockframe.motion import GroundMotion
 from rockframe.motion.description import OPERATIONS
 from rockframe.reports.project import ASSUMPTIONS, CHECKS, CONCLUSION, ENTRIES
+from rockframe.shared_arguments import parameter_rows
 from rockframe.simulation.system import System
 from rockframe.studies import sweep
 
@@ -170,13 +171,6 @@ _HEAD: Final = """\
 
 modules = []      # files in which you declare parts of your own, such as ["mine.py"]
 """
-_PARAMETERS: Final = re.compile(
-    r"^Parameters\n-+\n(.*?)(?=^\w[\w ]*\n-{3,}|\Z)", re.DOTALL | re.MULTILINE
-)
-_PARAMETER_ENTRY: Final = re.compile(
-    r"^(\*{0,2}\w[\w, *]*?) : .*\n((?:[ ]{4}.*\n?|\n(?=[ ]{4}))+)", re.MULTILINE
-)
-
 _SAMPLES: Final = {
     # of the system
     "gravity": '"9.81 m/s^2"', "inclination": '"2 deg"',
@@ -240,7 +234,7 @@ def _part_lines(slot: str, name: str, kind: type[Component]) -> Iterator[str]:
             continue
         words = _summary(function)
         yield f'# or {CONSTRUCTOR} = "{way}": {words[:1].lower()}{words[1:]}'
-        yield from _wrapped_keys(", ".join(_keys_with_needed(keys)))
+        yield from _wrapped_keys(_keys_with_needed(keys))
 
 
 def _component_lines(
@@ -302,11 +296,11 @@ def _motion_lines() -> Iterator[str]:
     yield f"# or {CONSTRUCTOR}, with its arguments:"
     for name in MOTIONS:
         keys = arguments_of(getattr(GroundMotion, name))
-        yield from _wrapped_keys(f"{name}: {', '.join(_keys_with_needed(keys))}")
+        yield from _wrapped_keys(f"{name}: {_keys_with_needed(keys)}")
     yield "# operations, such as operations = [{ scaled = { factor = 1.5 } }]:"
     for name in OPERATIONS:
         keys = arguments_of(getattr(GroundMotion, name), without=("motion",))
-        yield from _wrapped_keys(f"{name}: {', '.join(_keys_with_needed(keys))}")
+        yield from _wrapped_keys(f"{name}: {_keys_with_needed(keys)}")
 
 
 def _study_lines() -> Iterator[str]:
@@ -326,8 +320,8 @@ def _study_lines() -> Iterator[str]:
     yield from _function_lines("sweep", "how the cases are simulated", sweep, names=sweep_keys())
 
 
-def _keys_with_needed(keys: Mapping[str, bool]) -> list[str]:
-    return [f"{name} (needed)" if must else name for name, must in keys.items()]
+def _keys_with_needed(keys: Mapping[str, bool]) -> str:
+    return ", ".join(f"{name} (needed)" if must else name for name, must in keys.items())
 
 
 def _wrapped_keys(words: str) -> Iterator[str]:
@@ -351,15 +345,11 @@ def _summary(documented: object) -> str:
 
 def _meanings(documented: object) -> dict[str, str]:
     """Return the description of each parameter in a numpydoc docstring."""
-    section = _PARAMETERS.search(getdoc(documented) or "")
-    meanings: dict[str, str] = {}
-    for names, words in _PARAMETER_ENTRY.findall(section[1] if section else ""):
-        for name in names.split(","):
-            meanings[name.strip(" *")] = _without_markup(" ".join(words.split()))
-    return meanings
+    rows = parameter_rows(getdoc(documented) or "").items()
+    return {name: _without_markup(" ".join(row.splitlines()[1:])) for name, row in rows}
 
 
 def _without_markup(words: str) -> str:
     """Remove the markup of reStructuredText."""
-    words = re.sub(r", :eq:`[^`]*`", "", words)  # equations of the manual
+    words = re.sub(r", :eq:`[^`]*`", "", " ".join(words.split()))  # equations of the manual
     return re.sub(r":\w+:`[~.]?([^`]*)`", r"\1", words).replace("``", "").replace("`", "")
