@@ -59,8 +59,7 @@ RUN: Final = DatasetKind(
     ),
 )
 KINDS: Final[dict[str, DatasetKind]] = {}
-"""Kinds recognised by their variables, by the function that draws them; the first match counts,
-in the order in which modules are imported: a cloud has the variables of a fragility too."""
+"""Kinds recognised by their variables, by the function that draws them."""
 _REQUIRED_DATA: Final[dict[str, str]] = {}
 """The kind that each function draws, in words."""
 SWEEP_ATTRIBUTE: Final = "axes_json"
@@ -162,9 +161,13 @@ def draws(
 
 
 def _function_for(dataset: xr.Dataset) -> str | None:
-    return next(
-        (name for name, kind in KINDS.items() if _has_variables(dataset, kind.identifying)), None
-    )
+    """Return the function of the most special kind: a cloud has a fragility's variables, too."""
+    matches = [
+        (len(kind.identifying), name)
+        for name, kind in KINDS.items()
+        if _has_variables(dataset, kind.identifying)
+    ]
+    return max(matches)[1] if matches else None
 
 
 def figure_function_name(dataset: xr.Dataset) -> str:

@@ -284,7 +284,7 @@ def fractile_curves(
 @draws(
     "a cloud",
     "rf.cloud_analysis(runs)",
-    ("cloud_response", "residual_dispersion"),
+    ("cloud_response", "residual_dispersion", "fragility_status"),
     title="the verdict",
 )
 def cloud(
