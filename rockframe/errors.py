@@ -37,16 +37,17 @@ class RockframeError(Exception):
 
 
 def _user_traceback(trace: TracebackType | None) -> TracebackType | None:
-    """Return a traceback without the frames of rockframe."""
+    """Return a traceback without the frames of rockframe and of its context managers."""
     if trace is None:
         return None
     below = _user_traceback(trace.tb_next)
-    if str(trace.tb_frame.f_globals.get("__name__", "")).partition(".")[0] == _PACKAGE:
+    if str(trace.tb_frame.f_globals.get("__name__", "")).partition(".")[0] in _HIDDEN:
         return below
     return TracebackType(below, trace.tb_frame, trace.tb_lasti, trace.tb_lineno)
 
 
 _PACKAGE: Final = __name__.partition(".")[0]
+_HIDDEN: Final = {_PACKAGE, "contextlib"}
 
 
 class UnitsError(RockframeError, ValueError):

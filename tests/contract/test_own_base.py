@@ -530,7 +530,9 @@ class TestRegistration:
         rf.register(Copied, columns=[column()])  # again, as when a notebook's cell is repeated
 
     def test_unregistered_base_is_refused(self):
-        words = r"(?s)Copied\(frequency_ratio=20\.0\) is not a par.*call .*register\(Copied\) first"
+        words = (
+            r"(?s)Copied\(frequency_ratio=20\.0\) is not a par.*call .*register\(Copied\) beside"
+        )
         with pytest.raises(AssemblyError, match=words):
             rf.System(BLOCK, Copied(frequency_ratio=20))
 
@@ -603,7 +605,7 @@ class TestRegistration:
             def support(self, load):
                 return yielding.YieldingPads(**{**GIVEN, "frequency_ratio": 10}).support(load)
 
-        with pytest.raises(AssemblyError, match=r"call rockframe\.register\(SofterPads\) first"):
+        with pytest.raises(AssemblyError, match=r"call rockframe\.register\(SofterPads\) beside"):
             rf.System(BLOCK, SofterPads(**GIVEN))
         rf.register(SofterPads)
         assert rf.System(BLOCK, SofterPads(**GIVEN)).setting.settlement == pytest.approx(
