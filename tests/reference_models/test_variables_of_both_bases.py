@@ -63,8 +63,8 @@ class AgeingPad(NamedTuple):
     def energy(self, point, own):
         return self.elastic().energy(point, ())
 
-    def energies(self, point, rest, at_rest, own):
-        return self.elastic().energies(point, rest, at_rest, ())
+    def energies(self, point, at_rest, own):
+        return self.elastic().energies(point, at_rest, ())
 
     def power(self, state, point, own):
         return self.elastic().power(state, point, ())
