@@ -129,10 +129,16 @@ class YieldingPads(ext.OwnBase):
     """Two equal pads with bilinear springs, one under each corner, that take no tension."""
 
     slot = "pads"
-    frequency_ratio = ext.Ratio(ext.POSITIVE, doc="Vertical over rocking frequency, Eq. (8).")
-    damping_ratio = ext.DampingRatio(doc="Vertical damping ratio, Eq. (7b).")
-    strength = ext.Ratio(ext.POSITIVE, doc="Force at which a pad yields, over the weight.")
-    hardening = ext.Ratio(ext.UNIT_INTERVAL, doc="Stiffness after yielding over that before.")
+    frequency_ratio: ext.Ratio = ext.Ratio(
+        ext.POSITIVE, doc="Vertical over rocking frequency, Eq. (8)."
+    )
+    damping_ratio: ext.DampingRatio = ext.DampingRatio(doc="Vertical damping ratio, Eq. (7b).")
+    strength: ext.Ratio = ext.Ratio(
+        ext.POSITIVE, doc="Force at which a pad yields, over the weight."
+    )
+    hardening: ext.Ratio = ext.Ratio(
+        ext.UNIT_INTERVAL, doc="Stiffness after yielding over that before."
+    )
 
     def simpler(self):
         beta, xi = self.si.frequency_ratio, self.si.damping_ratio

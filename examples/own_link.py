@@ -57,11 +57,11 @@ class Hardening(NamedTuple):
 class Rope(ext.OwnLink):
     """A rope that hardens."""
 
-    stiffness = ext.Parameter(
+    stiffness: ext.Parameter = ext.Parameter(
         ext.Measure("a stiffness", ext.Unit.NEWTON_PER_METRE, "2 MN/m"), ext.POSITIVE,
         doc="Stiffness where it becomes taut.",
     )  # fmt: skip
-    reach = ext.Parameter(
+    reach: ext.Parameter = ext.Parameter(
         ext.Measure("a length", ext.Unit.METRE, "0.1 m"), ext.POSITIVE,
         doc="Elongation at which its force is twice that of a spring.",
     )  # fmt: skip

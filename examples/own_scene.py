@@ -289,8 +289,10 @@ class SlidingGround(ext.Component):
     """Rigid ground with Coulomb friction."""
 
     noun = "ground"
-    friction = ext.Ratio(ext.POSITIVE, doc="Coefficient of friction at rest.")
-    kinetic_friction = ext.Ratio(ext.POSITIVE, doc="While it slides; as at rest.", default=None)
+    friction: ext.Ratio = ext.Ratio(ext.POSITIVE, doc="Coefficient of friction at rest.")
+    kinetic_friction: ext.Ratio[None] = ext.Ratio(
+        ext.POSITIVE, doc="While it slides; as at rest.", default=None
+    )
 
 
 class SlidingScene(ext.OwnScene):

@@ -118,9 +118,13 @@ class YieldingSoil(ext.OwnBase):
     """A bed of springs that yield, by three dimensionless numbers."""
 
     slot = "soil"
-    settlement = ext.Ratio(ext.POSITIVE, doc="Elastic settlement under the weight over b.")
-    load = ext.Ratio(ext.UNIT_INTERVAL, doc="Weight over the strength of the whole bed, n.")
-    damping_ratio = ext.DampingRatio(doc="Of vertical vibration.")
+    settlement: ext.Ratio = ext.Ratio(
+        ext.POSITIVE, doc="Elastic settlement under the weight over b."
+    )
+    load: ext.Ratio = ext.Ratio(
+        ext.UNIT_INTERVAL, doc="Weight over the strength of the whole bed, n."
+    )
+    damping_ratio: ext.DampingRatio = ext.DampingRatio(doc="Of vertical vibration.")
 
     def support(self, load):
         half_width, weight = load.body.half_width, load.weight

@@ -3,6 +3,7 @@
 from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import lru_cache
+from typing import Any
 
 from rockframe.errors import ComponentError
 from rockframe.suggestions import with_hints
@@ -92,3 +93,13 @@ class OneOf:
         """
         named = frozenset(name for name, value in changes.items() if value is not None)
         return _displaced(self.ways, named)
+
+
+def changed_arguments(
+    arguments: Mapping[str, float | str],
+    changes: Mapping[str, Any],
+    alternatives: tuple[OneOf, ...],
+) -> dict[str, Any]:
+    """Return arguments with changes, without those that the changes replace."""
+    removed = {name for alternative in alternatives for name in alternative.displaced(changes)}
+    return {**{name: value for name, value in arguments.items() if name not in removed}, **changes}

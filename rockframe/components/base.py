@@ -4,12 +4,22 @@ from collections.abc import Collection, Iterable, Mapping
 from inspect import Parameter as Argument
 from inspect import Signature
 from textwrap import fill
-from typing import Any, ClassVar, Final, Self
+from typing import Any, ClassVar, Final, Generic, Self, dataclass_transform
 
 from rockframe.arguments import checked_list, checked_mapping
 from rockframe.case_arrays import CaseArray, isfinite
-from rockframe.components.alternatives import OneOf
-from rockframe.components.parameters import DERIVED, REQUIRED, Declared, SIValues
+from rockframe.components.alternatives import OneOf, changed_arguments
+from rockframe.components.parameters import (
+    REQUIRED,
+    Count,
+    Declared,
+    Numbers,
+    Parameter,
+    Position,
+    Ratio,
+    SIValues,
+    Text,
+)
 from rockframe.errors import (
     ArgumentError,
     ComponentError,
@@ -32,7 +42,7 @@ _WIDTH: Final = 79
 _INDENT: Final = "    "
 
 
-def _parameter_row(parameter: Declared[Any, Any]) -> str:
+def _parameter_row(parameter: Declared[Any, Any, Any]) -> str:
     optional = "" if parameter.default is REQUIRED else ", optional"
     unit = f"[{parameter.unit}]"
     text = parameter.words.replace(unit, unit.replace(" ", "~"))  # not broken between lines
@@ -41,15 +51,19 @@ def _parameter_row(parameter: Declared[Any, Any]) -> str:
     return f"{parameter.name} : {parameter.written_as}{optional}\n{words}"
 
 
+@dataclass_transform(
+    kw_only_default=True, field_specifiers=(Parameter, Ratio, Text, Count, Position)
+)
 @suggests_names
-class Component(Immutable):
+class Component(Immutable, Generic[Numbers]):
     """An immutable value object with the parameters that its class declares.
 
     A class of components declares each parameter once, as an attribute:
     :class:`~rockframe.components.Parameter` (with a unit),
     :class:`~rockframe.components.Ratio`, :class:`~rockframe.components.Choice` or
     :class:`~rockframe.components.Text`. The attribute ``alternatives`` lists those that replace
-    one another. Constructor, checks, properties and the methods below follow from these.
+    one another. Constructor, checks, properties and the methods below follow from these. Type
+    checkers know the constructor by the annotations, as of a dataclass (PEP 681).
 
     All values are in SI units. The attribute ``given`` has the arguments of the constructor, and
     ``si`` the numbers that the equations need.
@@ -59,8 +73,8 @@ class Component(Immutable):
     >>> from rockframe.components import Component, Parameter, Ratio
     >>> from rockframe.units import FORCE, POSITIVE
     >>> class Buffer(Component):
-    ...     strength = Parameter(FORCE, POSITIVE, doc="Force at which it breaks.")
-    ...     friction = Ratio(doc="Coefficient of friction.", default=0.3)
+    ...     strength: Parameter = Parameter(FORCE, POSITIVE, doc="Force at which it breaks.")
+    ...     friction: Ratio[float] = Ratio(doc="Coefficient of friction.", default=0.3)
     >>> buffer = Buffer(strength="3 kN")
     >>> buffer
     Buffer(strength='3000.0 N', friction=0.3)
@@ -78,11 +92,12 @@ class Component(Immutable):
 
     __slots__ = ("given", "si")
     given: SIValues
-    si: Any
+    si: Numbers
 
     noun: ClassVar[str] = "component"
     alternatives: ClassVar[tuple[OneOf, ...]] = ()
-    _declared: ClassVar[Mapping[str, Declared[Any, Any]]] = {}
+    _hints: ClassVar[Mapping[str, str]] = {}  # on arguments that it does not take
+    _declared: ClassVar[Mapping[str, Declared[Any, Any, Any]]] = {}
 
     def __init_subclass__(cls, **options: Any) -> None:
         super().__init_subclass__(**options)
@@ -120,7 +135,7 @@ class Component(Immutable):
 
     def _set_arguments(self, values: Mapping[str, object]) -> None:
         """Check and store the arguments of the constructor."""
-        arguments = _with_defaults(type(self), values)
+        arguments = self._with_defaults(values)
         owner = self._owner(arguments)
         self._check(arguments, owner)
         self._set_values(
@@ -129,6 +144,33 @@ class Component(Immutable):
                 for name, parameter in self._declared.items()
             }
         )
+
+    @classmethod
+    def _with_defaults(cls, values: Mapping[str, object]) -> dict[str, object]:
+        """Add defaults to arguments; refuse unknown and missing ones as Python does."""
+        declared = cls.declared()
+        call = f"{cls.__qualname__}.__init__()"
+        for name in values:
+            if name in cls._hints:
+                msg = f"{call} takes no {name!r}: {cls._hints[name]}"
+                raise ArgumentError(msg)
+            if name not in declared:
+                raise unexpected_argument(call, name, declared)
+        missing = [
+            repr(name)
+            for name, parameter in declared.items()
+            if parameter.default is REQUIRED and name not in values
+        ]
+        if missing:
+            count = (
+                f"{len(missing)} required keyword-only argument{'s' if len(missing) > 1 else ''}"
+            )
+            if len(missing) > 2:
+                missing = [", ".join(missing[:-1]) + ",", missing[-1]]
+            msg = f"{call} missing {count}: {' and '.join(missing)}"
+            raise ArgumentError(msg)
+        defaults = {name: parameter.default_argument for name, parameter in declared.items()}
+        return {**defaults, **values}
 
     def _set_values(self, values: Mapping[str, object]) -> None:
         """Store values in SI units, and the numbers derived from them."""
@@ -266,7 +308,7 @@ class Component(Immutable):
         return type(self)(**changed_arguments(self._arguments(), changes, self.alternatives))
 
     @classmethod
-    def declared(cls) -> Mapping[str, Declared[Any, Any]]:
+    def declared(cls) -> Mapping[str, Declared[Any, Any, Any]]:
         """Return the declarations of all parameters by name.
 
         Returns
@@ -276,7 +318,7 @@ class Component(Immutable):
         return cls._declared
 
     @classmethod
-    def varied(cls) -> Mapping[str, Declared[Any, Any]]:
+    def varied(cls) -> Mapping[str, Declared[Any, Any, Any]]:
         """Return the declarations of all quantities that :meth:`with_si` takes, by name.
 
         Returns
@@ -424,42 +466,6 @@ def _register(kind: type[Component]) -> None:
     COMPONENT_CLASSES[kind.__name__] = kind
 
 
-def changed_arguments(
-    arguments: Mapping[str, float | str],
-    changes: Mapping[str, Any],
-    alternatives: tuple[OneOf, ...],
-) -> dict[str, Any]:
-    """Return arguments with changes, without those that the changes replace."""
-    removed = {name for alternative in alternatives for name in alternative.displaced(changes)}
-    return {**{name: value for name, value in arguments.items() if name not in removed}, **changes}
-
-
-def _with_defaults(kind: type[Component], values: Mapping[str, object]) -> dict[str, object]:
-    """Add defaults to arguments; refuse unknown and missing ones as Python does."""
-    declared = kind.declared()
-    call = f"{kind.__qualname__}.__init__()"
-    for name in values:
-        if name not in declared:
-            raise unexpected_argument(call, name, declared)
-    missing = [
-        repr(name)
-        for name, parameter in declared.items()
-        if parameter.default is REQUIRED and name not in values
-    ]
-    if missing:
-        count = f"{len(missing)} required keyword-only argument{'s' if len(missing) > 1 else ''}"
-        msg = f"{call} missing {count}: {' and '.join(missing)}"
-        raise ArgumentError(msg)
-    defaults = {name: _default(parameter, None) for name, parameter in declared.items()}
-    return {**defaults, **values}
-
-
-def _default(parameter: Declared[Any, Any], required: object) -> object:
-    if parameter.default is REQUIRED:
-        return required
-    return None if parameter.default is DERIVED else parameter.default
-
-
 def _constructor(kind: type[Component]) -> Any:
     """Make a constructor with the signature of the declarations."""
 
@@ -473,17 +479,10 @@ def _constructor(kind: type[Component]) -> Any:
 
     __init__.hints = {}  # type: ignore[attr-defined]  # it explains unknown arguments itself
 
-    arguments = [
-        Argument(
-            name,
-            Argument.KEYWORD_ONLY,
-            default=_default(parameter, Argument.empty),
-            annotation=parameter.annotation,
-        )
-        for name, parameter in kind.declared().items()
-    ]
+    arguments = [parameter.argument for parameter in kind.declared().values()]
     this = Argument("self", Argument.POSITIONAL_OR_KEYWORD)
-    __init__.__signature__ = Signature([this, *arguments])  # type: ignore[attr-defined]
+    signature = Signature([this, *arguments], return_annotation=None)
+    __init__.__signature__ = signature  # type: ignore[attr-defined]
     __init__.__qualname__ = f"{kind.__qualname__}.__init__"
     __init__.__module__ = kind.__module__
     return __init__

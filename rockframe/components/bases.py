@@ -1,5 +1,6 @@
 """Bases under bodies: rigid ground, pads, soil, and a cap between building and soil."""
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 from enum import StrEnum
 from typing import ClassVar, Final, Literal, Self, TypeAlias
@@ -13,12 +14,9 @@ from rockframe.components.parameters import (
     Parameter,
     Ratio,
     SIValues,
-    check_frictions,
-    kinetic_friction_parameter,
-    static_friction_parameter,
 )
+from rockframe.errors import ComponentError
 from rockframe.notebook import Polygon, rectangle
-from rockframe.suggestions import with_hints
 from rockframe.units import (
     BED_DAMPING,
     BED_STIFFNESS,
@@ -51,6 +49,31 @@ class Impact(StrEnum):
 ImpactLike: TypeAlias = Impact | Literal["coulomb", "stick"]
 
 
+def _static_friction(of: str) -> Ratio[None]:
+    """Declare a static coefficient of friction under a body."""
+    words = f"Coefficient of friction under {of} while it does not slip; without one it is held."
+    return Ratio(NOT_NEGATIVE, doc=words, default=None, example="0.5")
+
+
+def _kinetic_friction() -> Ratio[None]:
+    """Declare a kinetic coefficient of friction."""
+    words = "Kinetic coefficient of friction, of slip; the static one unless given."
+    return Ratio(NOT_NEGATIVE, doc=words, default=None, example="0.45")
+
+
+def _check_frictions(owner: str, numbers: SIValues) -> SIValues:
+    """Refuse a kinetic friction without a static one, or above it."""
+    static, kinetic = numbers.friction, numbers.kinetic_friction
+    if kinetic is not None and (static is None or kinetic > static):
+        found = "is not given" if static is None else f"is {static:.6g}"
+        msg = (
+            f"{owner}: kinetic_friction must be at most the friction at rest, which {found}; got "
+            f"{kinetic:.6g}"
+        )
+        raise ComponentError(msg)
+    return numbers
+
+
 class RigidGround(Component):
     """Rigid ground under a block, which rocks on it (Housner's model) and may slide.
 
@@ -77,37 +100,22 @@ class RigidGround(Component):
 
     noun: ClassVar[str] = "base"
 
-    restitution = Ratio(
+    restitution: Ratio[None] = Ratio(
         UNIT_INTERVAL,
         doc="Ratio of the angular velocities after and before an impact without slip; the "
         "block's eps_max, Eq. (4), unless given.",
         default=None,
         example="0.9",
     )
-    friction = static_friction_parameter("the block")
-    kinetic_friction = kinetic_friction_parameter()
-    impact = Choice(
+    friction: Ratio[None] = _static_friction("the block")
+    kinetic_friction: Ratio[None] = _kinetic_friction()
+    impact: Choice[Impact, ImpactLike] = Choice(
         Impact.COULOMB,
         doc="Whether a corner slips during its impact against kinetic friction, or is held.",
     )
 
-    def __init__(
-        self,
-        *,
-        restitution: RatioLike | None = None,
-        friction: RatioLike | None = None,
-        kinetic_friction: RatioLike | None = None,
-        impact: ImpactLike = Impact.COULOMB,
-    ) -> None:
-        super().__init__(
-            restitution=restitution,
-            friction=friction,
-            kinetic_friction=kinetic_friction,
-            impact=impact,
-        )
-
     def _numbers(self, numbers: SIValues) -> SIValues:
-        return check_frictions("RigidGround", numbers)
+        return _check_frictions("RigidGround", numbers)
 
 
 class TwoSpringSupport(Component):
@@ -147,26 +155,26 @@ class TwoSpringSupport(Component):
         OneOf("damping_ratio", "damping"),
     )
 
-    frequency_ratio = Ratio(
+    frequency_ratio: Ratio[None] = Ratio(
         POSITIVE,
         doc="beta = omega_v / omega, vertical over rocking frequency, Eq. (8).",
         default=None,
         example="20",
     )
-    stiffness = Parameter(
+    stiffness: Parameter[None] = Parameter(
         STIFFNESS,
         POSITIVE,
         doc="Stiffness k of one pad, instead of `frequency_ratio`.",
         default=None,
     )
-    damping_ratio = DampingRatio(doc="Vertical damping ratio xi, Eq. (7b).")
-    damping = Parameter(
+    damping_ratio: DampingRatio = DampingRatio(doc="Vertical damping ratio xi, Eq. (7b).")
+    damping: Parameter[None] = Parameter(
         DAMPING,
         NOT_NEGATIVE,
         doc="Damping coefficient c of one pad, instead of `damping_ratio`.",
         default=None,
     )
-    restitution = Ratio(
+    restitution: Ratio[None] = Ratio(
         UNIT_INTERVAL,
         doc="Ratio eps of a landing corner's speeds after and before the impact, Eq. (2); "
         "eps_max, Eq. (4), unless given.",
@@ -174,28 +182,11 @@ class TwoSpringSupport(Component):
         example="0.9",
     )
 
-    friction = static_friction_parameter("the block")
-    kinetic_friction = kinetic_friction_parameter()
-
-    def __init__(
-        self,
-        *,
-        frequency_ratio: RatioLike | None = None,
-        stiffness: QuantityLike | None = None,
-        damping_ratio: RatioLike | None = None,
-        damping: QuantityLike | None = None,
-        restitution: RatioLike | None = None,
-        friction: RatioLike | None = None,
-        kinetic_friction: RatioLike | None = None,
-    ) -> None:
-        super().__init__(
-            frequency_ratio=frequency_ratio, stiffness=stiffness, damping_ratio=damping_ratio,
-            damping=damping, restitution=restitution, friction=friction,
-            kinetic_friction=kinetic_friction,
-        )  # fmt: skip
+    friction: Ratio[None] = _static_friction("the block")
+    kinetic_friction: Ratio[None] = _kinetic_friction()
 
     def _numbers(self, numbers: SIValues) -> SIValues:
-        return check_frictions("TwoSpringSupport", numbers)
+        return _check_frictions("TwoSpringSupport", numbers)
 
 
 @dataclass(frozen=True)
@@ -217,7 +208,7 @@ class CushionCapSI:
         return self.mass_at(width) * diagonal * diagonal / 12.0
 
 
-class CushionCap(Component):
+class CushionCap(Component[CushionCapSI]):
     """A rigid, solid slab that distributes the weight of a building over the soil.
 
     Raises
@@ -235,35 +226,25 @@ class CushionCap(Component):
     45000.0
     """
 
-    si: CushionCapSI
     noun: ClassVar[str] = "cap"
     alternatives: ClassVar[tuple[OneOf, ...]] = (OneOf("mass", ("density", "depth")),)
 
-    height = Parameter(THICKNESS, NOT_NEGATIVE, doc="Height H_c; zero for a thin plate.")
-    mass = Parameter(
+    height: Parameter = Parameter(THICKNESS, NOT_NEGATIVE, doc="Height H_c; zero for a thin plate.")
+    mass: Parameter[None] = Parameter(
         MASS, NOT_NEGATIVE, doc="Mass m_c; zero for a plate without mass.", default=None
     )
-    width = Parameter(
+    width: Parameter[None] = Parameter(
         LENGTH,
         POSITIVE,
         doc="Width B_c in the plane of rocking; the building's unless given.",
         default=None,
     )
-    density = Parameter(
+    density: Parameter[None] = Parameter(
         DENSITY, POSITIVE, doc="Mass per volume, with `depth` instead of `mass`.", default=None
     )
-    depth = Parameter(LENGTH, POSITIVE, doc="Size out of the plane of rocking.", default=None)
-
-    def __init__(
-        self,
-        *,
-        height: QuantityLike,
-        mass: QuantityLike | None = None,
-        width: QuantityLike | None = None,
-        density: QuantityLike | None = None,
-        depth: QuantityLike | None = None,
-    ) -> None:
-        super().__init__(height=height, mass=mass, width=width, density=density, depth=depth)
+    depth: Parameter[None] = Parameter(
+        LENGTH, POSITIVE, doc="Size out of the plane of rocking.", default=None
+    )
 
     def _shapes(self) -> list[Polygon]:
         width = self.si.width
@@ -316,52 +297,39 @@ class WinklerSoil(Component):
 
     noun: ClassVar[str] = "soil"
     alternatives: ClassVar[tuple[OneOf, ...]] = (OneOf("damping", "damping_ratio"),)
+    _hints: ClassVar[Mapping[str, str]] = {
+        "subgrade_modulus": _SUBGRADE_HINT, "modulus": _SUBGRADE_HINT
+    }  # fmt: skip
 
-    stiffness = Parameter(
+    stiffness: Parameter = Parameter(
         BED_STIFFNESS,
         POSITIVE,
         doc="k0, stiffness of the bed per length of base in the plane of rocking: the subgrade "
         "modulus times the base's depth out of the plane.",
     )
-    damping = Parameter(
+    damping: Parameter[None] = Parameter(
         BED_DAMPING,
         NOT_NEGATIVE,
         doc="c0, damping coefficient per length of base.",
         default=None,
     )
-    damping_ratio = DampingRatio(
+    damping_ratio: DampingRatio = DampingRatio(
         doc="Damping ratio of the vertical motion, instead of `damping`: "
         "2 b c0 = 2 xi_s sqrt(2 b k0 m), with the whole mass m on the bed.",
     )
-    separation = Choice(
+    separation: Choice[Separation, SeparationLike] = Choice(
         Separation.DISPLACEMENT,
         doc="Where the base loses contact: above the level of the unloaded bed, as in the "
         "paper; or also where springs and dashpots together would pull.",
     )
 
-    friction = static_friction_parameter("what stands on it")
-    kinetic_friction = kinetic_friction_parameter()
+    friction: Ratio[None] = _static_friction("what stands on it")
+    kinetic_friction: Ratio[None] = _kinetic_friction()
 
     _depth: float | None = None
 
-    @with_hints(subgrade_modulus=_SUBGRADE_HINT, modulus=_SUBGRADE_HINT)
-    def __init__(
-        self,
-        *,
-        stiffness: QuantityLike,
-        damping: QuantityLike | None = None,
-        damping_ratio: RatioLike | None = None,
-        separation: SeparationLike = Separation.DISPLACEMENT,
-        friction: RatioLike | None = None,
-        kinetic_friction: RatioLike | None = None,
-    ) -> None:
-        super().__init__(
-            stiffness=stiffness, damping=damping, damping_ratio=damping_ratio,
-            separation=separation, friction=friction, kinetic_friction=kinetic_friction,
-        )  # fmt: skip
-
     def _numbers(self, numbers: SIValues) -> SIValues:
-        return check_frictions("WinklerSoil", numbers)
+        return _check_frictions("WinklerSoil", numbers)
 
     @classmethod
     def from_subgrade_modulus(

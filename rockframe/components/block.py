@@ -14,7 +14,7 @@ from rockframe.components.block_numbers import (
     inertia_warnings,
     width_from_radius,
 )
-from rockframe.components.parameters import DERIVED, Declared, Parameter, Ratio, SIValues
+from rockframe.components.parameters import DERIVED, Declared, Derived, Parameter, Ratio, SIValues
 from rockframe.components.shapes import outline, parts
 from rockframe.errors import ComponentError, ModelWarning, short_repr, warn
 from rockframe.notebook import Polygon, rectangle
@@ -52,7 +52,7 @@ for _name, _parameter in _SIZE_PARAMETERS.items():
     _parameter.name = _name
 
 
-class Block(Component):
+class Block(Component[BlockSI]):
     """A rigid rectangular block, or a body that rocks like one.
 
     Raises
@@ -88,32 +88,31 @@ class Block(Component):
     60.0 metric_ton
     """
 
-    si: BlockSI
     noun: ClassVar[str] = "body"
     alternatives: ClassVar[tuple[OneOf, ...]] = (OneOf("shape_factor", "inertia", required=False),)
 
-    width = Parameter(LENGTH, POSITIVE, doc="Base width B.")
-    height = Parameter(LENGTH, POSITIVE, doc="Height H.")
-    mass = Parameter(MASS, POSITIVE, doc="Mass m.")
-    shape_factor = Ratio(
+    width: Parameter = Parameter(LENGTH, POSITIVE, doc="Base width B.")
+    height: Parameter = Parameter(LENGTH, POSITIVE, doc="Height H.")
+    mass: Parameter = Parameter(MASS, POSITIVE, doc="Mass m.")
+    shape_factor: Ratio[Derived] = Ratio(
         POSITIVE,
         doc="mu = m R0^2 / I_O; 3, the solid rectangle's, unless given.",
         default=DERIVED,
         example="3",
     )
-    inertia = Parameter(
+    inertia: Parameter[Derived] = Parameter(
         INERTIA,
         POSITIVE,
         doc="Moment of inertia about the centre of mass I_O, instead of `shape_factor`.",
         default=DERIVED,
     )
-    centre_height = Parameter(
+    centre_height: Parameter[Derived] = Parameter(
         LENGTH.like("1.8 m"),
         POSITIVE,
         doc="Height of the centre of mass above the base; H/2 unless given.",
         default=DERIVED,
     )
-    eccentricity = Parameter(
+    eccentricity: Parameter[Derived] = Parameter(
         LENGTH.like("0.1 m"),
         doc="Distance of the centre of mass to the right of the middle of the base; 0 unless "
         "given.",
@@ -215,7 +214,7 @@ class Block(Component):
         return block
 
     @classmethod
-    def varied(cls) -> Mapping[str, Declared[Any, Any]]:
+    def varied(cls) -> Mapping[str, Declared[Any, Any, Any]]:
         """Return the declarations of all parameters, and of `radius` and `slenderness`.
 
         Returns

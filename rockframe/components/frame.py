@@ -6,12 +6,12 @@ from typing import Any, Self
 
 import xarray as xr
 
-from rockframe.components.base import changed_arguments
+from rockframe.components.alternatives import changed_arguments
 from rockframe.components.block import Block
 from rockframe.components.frame_building import Building, make_building
 from rockframe.components.frame_members import Member, make_members_table, member_outlines
 from rockframe.components.frame_regular import INFILL_THICKNESS, SLAB_THICKNESS, RegularFrame
-from rockframe.components.parameters import DERIVED, Ratio
+from rockframe.components.parameters import DERIVED, Derived, Ratio
 from rockframe.errors import ComponentError, SchemaError, short_repr
 from rockframe.notebook import Polygon
 from rockframe.units import LENGTH, POSITIVE, Quantity, QuantityLike, RatioLike, quantity
@@ -53,7 +53,9 @@ class FrameEquivalent(Block):
     0.418
     """
 
-    shape_factor = Ratio(POSITIVE, doc="mu of Eq. (22).", default=DERIVED, example="2.5")
+    shape_factor: Ratio[Derived] = Ratio(
+        POSITIVE, doc="mu of Eq. (22).", default=DERIVED, example="2.5"
+    )
 
     _building: Building | None = None
 

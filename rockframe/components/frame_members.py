@@ -9,7 +9,7 @@ import xarray as xr
 
 from rockframe.components.alternatives import OneOf
 from rockframe.components.base import Component
-from rockframe.components.parameters import DERIVED, Parameter, SIValues, Text
+from rockframe.components.parameters import DERIVED, Derived, Parameter, SIValues, Text
 from rockframe.components.shapes.standing import PlaneMass
 from rockframe.constants import CONVENTIONS
 from rockframe.errors import ComponentError
@@ -21,7 +21,6 @@ from rockframe.units import (
     MASS,
     NOT_NEGATIVE,
     POSITIVE,
-    QuantityLike,
     Unit,
 )
 from rockframe.version import __version__
@@ -40,7 +39,7 @@ class MemberSI(PlaneMass):
         return math.hypot(self.x, self.y - 0.5 * height)
 
 
-class Member(Component):
+class Member(Component[MemberSI]):
     """A column, beam, slab or wall of a building, seen in the plane of rocking.
 
     Raises
@@ -63,43 +62,46 @@ class Member(Component):
     2083.3
     """
 
-    si: MemberSI
     noun: ClassVar[str] = "member"
     alternatives: ClassVar[tuple[OneOf, ...]] = (
         OneOf("mass", "density"),
         OneOf(("width", "height", "depth"), "inertia"),
     )
 
-    name = Text(doc="Name in :meth:`FrameEquivalent.members_table`.")
-    kind = Text(doc='Kind, such as ``"column"``, by which members can be grouped.', default=None)
-    mass = Parameter(MASS, POSITIVE, doc="Mass m_i.", default=DERIVED)
-    density = Parameter(
+    name: Text = Text(doc="Name in :meth:`FrameEquivalent.members_table`.")
+    kind: Text[None] = Text(
+        doc='Kind, such as ``"column"``, by which members can be grouped.', default=None
+    )
+    mass: Parameter[Derived] = Parameter(MASS, POSITIVE, doc="Mass m_i.", default=DERIVED)
+    density: Parameter[None] = Parameter(
         DENSITY,
         POSITIVE,
         doc="Mass per volume, instead of `mass`; needs all three sizes.",
         default=None,
     )
-    x = Parameter(
+    x: Parameter = Parameter(
         LENGTH,
         doc="Horizontal position of its centre of mass, from the middle of the building's base, "
         "to the right.",
     )
-    y = Parameter(LENGTH, doc="Height of its centre of mass above the base.")
-    width = Parameter(
+    y: Parameter = Parameter(LENGTH, doc="Height of its centre of mass above the base.")
+    width: Parameter[None] = Parameter(
         LENGTH,
         POSITIVE,
         doc="Horizontal size of a rectangular member in the plane of rocking.",
         default=None,
     )
-    height = Parameter(LENGTH, POSITIVE, doc="Vertical size of a rectangular member.", default=None)
-    depth = Parameter(
+    height: Parameter[None] = Parameter(
+        LENGTH, POSITIVE, doc="Vertical size of a rectangular member.", default=None
+    )
+    depth: Parameter[None] = Parameter(
         LENGTH,
         POSITIVE,
         doc="Size of a rectangular member perpendicular to the plane of rocking. Only its volume "
         "depends on it.",
         default=None,
     )
-    inertia = Parameter(
+    inertia: Parameter[Derived] = Parameter(
         INERTIA,
         NOT_NEGATIVE,
         doc="Moment of inertia I_i about its own centre of mass, about the axis perpendicular to "
@@ -107,25 +109,6 @@ class Member(Component):
         "rectangle.",
         default=DERIVED,
     )
-
-    def __init__(
-        self,
-        *,
-        name: str,
-        mass: QuantityLike | None = None,
-        density: QuantityLike | None = None,
-        x: QuantityLike,
-        y: QuantityLike,
-        width: QuantityLike | None = None,
-        height: QuantityLike | None = None,
-        inertia: QuantityLike | None = None,
-        depth: QuantityLike | None = None,
-        kind: str | None = None,
-    ) -> None:
-        super().__init__(
-            name=name, kind=kind, mass=mass, density=density, x=x, y=y, width=width, height=height,
-            depth=depth, inertia=inertia,
-        )  # fmt: skip
 
     @classmethod
     def box(

@@ -11,7 +11,7 @@ import numpy as np
 from rockframe.components.alternatives import OneOf
 from rockframe.components.base import Component
 from rockframe.components.frame_members import Member
-from rockframe.components.parameters import DERIVED, Declared, Missing, Parameter, SIValues
+from rockframe.components.parameters import DERIVED, Declared, Derived, Parameter, SIValues
 from rockframe.errors import ComponentError
 from rockframe.units import (
     DENSITY,
@@ -69,7 +69,7 @@ class RegularFrameSI:
         return self.levels[-1]
 
 
-class StoreyCount(Declared[int, Missing]):
+class StoreyCount(Declared[int, RatioLike, Derived]):
     """A number of storeys."""
 
     written_as = "int"
@@ -80,7 +80,7 @@ class StoreyCount(Declared[int, Missing]):
         return to_ratio(value, owner=owner, name=self.name, condition=self.condition, example="3")
 
 
-class StoreyHeights(Declared[Quantity, Missing]):
+class StoreyHeights(Declared[Quantity, Iterable[QuantityLike], Derived]):
     """Heights of storeys: a sequence, or a text with semicolons between them."""
 
     single = False
@@ -110,7 +110,7 @@ class StoreyHeights(Declared[Quantity, Missing]):
         return quantity(np.array(value), LENGTH)
 
 
-class InfillThickness(Declared[Quantity | None, str]):
+class InfillThickness(Declared[Quantity | None, QuantityLike | None, str]):
     """Thickness of walls; None or ``"none"`` for no walls, which is zero in SI units."""
 
     written_as = "str, Quantity or None"
@@ -132,7 +132,7 @@ class InfillThickness(Declared[Quantity | None, str]):
         return quantity(value, self.measure) if value else None
 
 
-class RegularFrame(Component):
+class RegularFrame(Component[RegularFrameSI]):
     """A building of equal floors on four corner columns, as in the paper's section 4.2.
 
     Raises
@@ -167,74 +167,54 @@ class RegularFrame(Component):
     ['column left front', 'column left back']
     """
 
-    si: RegularFrameSI
     noun: ClassVar[str] = "frame"
     alternatives: ClassVar[tuple[OneOf, ...]] = (OneOf(("storeys", "height"), "storey_heights"),)
 
-    storeys = StoreyCount(None, _COUNT, doc="Number of storeys, all equally high.", default=DERIVED)
-    height = Parameter(
+    storeys: StoreyCount = StoreyCount(
+        None, _COUNT, doc="Number of storeys, all equally high.", default=DERIVED
+    )
+    height: Parameter[Derived] = Parameter(
         LENGTH, POSITIVE, doc="Height H of the building, with `storeys`.", default=DERIVED
     )
-    storey_heights = StoreyHeights(
+    storey_heights: StoreyHeights = StoreyHeights(
         LENGTH,
         POSITIVE,
         doc="Height of every storey from the lowest up, instead of `storeys` and `height`; one "
         "text holds them separated by semicolons.",
         default=DERIVED,
     )
-    width = Parameter(
+    width: Parameter = Parameter(
         LENGTH, POSITIVE, doc="Plan B_x in the plane of rocking, over the columns' outer faces."
     )
-    depth = Parameter(
+    depth: Parameter[Derived] = Parameter(
         LENGTH,
         POSITIVE,
         doc="Plan B_y perpendicular to it; `width` unless given, as in the paper.",
         default=DERIVED,
     )
-    column_width = Parameter(THICKNESS, POSITIVE, doc="Width of a column in the plane of rocking.")
-    column_depth = Parameter(
+    column_width: Parameter = Parameter(
+        THICKNESS, POSITIVE, doc="Width of a column in the plane of rocking."
+    )
+    column_depth: Parameter[Derived] = Parameter(
         THICKNESS,
         POSITIVE,
         doc="Perpendicular to it; `column_width`, a square column, unless given.",
         default=DERIVED,
     )
-    beam_height = Parameter(
+    beam_height: Parameter = Parameter(
         THICKNESS, POSITIVE, doc="Height of the edge beams, which includes the slab."
     )
-    beam_width = Parameter(THICKNESS, POSITIVE, doc="Width of the edge beams.")
-    slab_thickness = Parameter(
+    beam_width: Parameter = Parameter(THICKNESS, POSITIVE, doc="Width of the edge beams.")
+    slab_thickness: Parameter[str] = Parameter(
         THICKNESS, POSITIVE, doc="Thickness of the slabs.", default=SLAB_THICKNESS
     )
-    infill_thickness = InfillThickness(
+    infill_thickness: InfillThickness = InfillThickness(
         THICKNESS,
         Condition("greater than zero, or None for no walls", POSITIVE.holds),
         doc='Thickness of the infill walls; None (or ``"none"``) for no walls.',
         default=INFILL_THICKNESS,
     )
-    density = Parameter(DENSITY, POSITIVE, doc="Mass per volume of all members.")
-
-    def __init__(
-        self,
-        *,
-        width: QuantityLike,
-        column_width: QuantityLike,
-        beam_height: QuantityLike,
-        beam_width: QuantityLike,
-        density: QuantityLike,
-        storeys: RatioLike | None = None,
-        height: QuantityLike | None = None,
-        storey_heights: Iterable[QuantityLike] | None = None,
-        depth: QuantityLike | None = None,
-        column_depth: QuantityLike | None = None,
-        slab_thickness: QuantityLike = SLAB_THICKNESS,
-        infill_thickness: QuantityLike | None = INFILL_THICKNESS,
-    ) -> None:
-        super().__init__(
-            storeys=storeys, height=height, storey_heights=storey_heights, width=width, depth=depth,
-            column_width=column_width, column_depth=column_depth, beam_height=beam_height,
-            beam_width=beam_width, slab_thickness=slab_thickness, infill_thickness=infill_thickness,
-            density=density,
-        )  # fmt: skip
+    density: Parameter = Parameter(DENSITY, POSITIVE, doc="Mass per volume of all members.")
 
     def _check(self, values: Mapping[str, object], owner: str) -> None:
         of_all = [values[name] is not None for name in ("storeys", "height")]

@@ -8,7 +8,7 @@ from typing import ClassVar, Final
 from rockframe.components.base import Component
 from rockframe.components.parameters import Parameter, SIValues
 from rockframe.errors import short_repr
-from rockframe.units import ANGLE, ANGULAR_VELOCITY, LENGTH, VELOCITY, Condition, QuantityLike
+from rockframe.units import ANGLE, ANGULAR_VELOCITY, LENGTH, VELOCITY, Condition
 
 
 def _in_degrees(rotation: str) -> str:
@@ -33,7 +33,7 @@ class InitialStateSI:
     vertical_velocity: float
 
 
-class InitialState(Component):
+class InitialState(Component[InitialStateSI]):
     """Rotation, displacement and velocities at the start of a run; at rest unless given.
 
     Raises
@@ -53,39 +53,23 @@ class InitialState(Component):
     False
     """
 
-    si: InitialStateSI
     noun: ClassVar[str] = "initial state"
 
-    rotation = Parameter(
+    rotation: Parameter[None] = Parameter(
         ANGLE, _TILTED, doc="alpha, clockwise positive; that at rest unless given.", default=None
     )
-    angular_velocity = Parameter(
+    angular_velocity: Parameter[None] = Parameter(
         ANGULAR_VELOCITY, doc="Angular velocity, the rate of `rotation`.", default=None
     )
-    vertical_displacement = Parameter(
+    vertical_displacement: Parameter[None] = Parameter(
         _RISE,
         doc="Upward displacement of the centre of mass from static equilibrium; unless given, "
         "the block starts in vertical equilibrium at its rotation.",
         default=None,
     )
-    vertical_velocity = Parameter(
+    vertical_velocity: Parameter[None] = Parameter(
         VELOCITY, doc="Velocity, the rate of `vertical_displacement`.", default=None
     )
-
-    def __init__(
-        self,
-        *,
-        rotation: QuantityLike | None = None,
-        angular_velocity: QuantityLike | None = None,
-        vertical_displacement: QuantityLike | None = None,
-        vertical_velocity: QuantityLike | None = None,
-    ) -> None:
-        super().__init__(
-            rotation=rotation,
-            angular_velocity=angular_velocity,
-            vertical_displacement=vertical_displacement,
-            vertical_velocity=vertical_velocity,
-        )
 
     def _numbers(self, numbers: SIValues) -> InitialStateSI:
         return InitialStateSI(

@@ -28,7 +28,6 @@ from rockframe.units import (
     THICKNESS,
     Condition,
     Measure,
-    QuantityLike,
     RatioLike,
     Unit,
     to_ratio,
@@ -85,15 +84,15 @@ class PointLink(Link):
     (True, ('stiffness',))
     """
 
-    on = Position(doc="The point of the body.")
-    to = Position(doc="The other point.")
-    on_body = _body_parameter()
-    to_body = Count(
+    on: Position = Position(doc="The point of the body.")
+    to: Position = Position(doc="The other point.")
+    on_body: Count[int] = _body_parameter()
+    to_body: Count[None] = Count(
         doc="Number of the body of the other point; the ground, or a wall that moves with it, "
         "unless given.",
         default=None,
     )
-    name = _name_parameter()
+    name: Text[None] = _name_parameter()
 
 
 class Restrainer(PointLink):
@@ -127,58 +126,34 @@ class Restrainer(PointLink):
 
     noun: ClassVar[str] = "restrainer"
 
-    stiffness = Parameter(STIFFNESS, POSITIVE, doc="Force over elongation.")
-    slack = Parameter(
+    stiffness: Parameter = Parameter(STIFFNESS, POSITIVE, doc="Force over elongation.")
+    slack: Parameter[None] = Parameter(
         THICKNESS.like("5 mm"),
         NOT_NEGATIVE,
         doc="Elongation at which it becomes taut; none unless given.",
         default=None,
     )
-    preload = Parameter(
+    preload: Parameter[None] = Parameter(
         FORCE,
         NOT_NEGATIVE,
         doc="Tension while the bodies stand upright under their weight alone; none unless given.",
         default=None,
     )
-    strength = Parameter(
+    strength: Parameter[None] = Parameter(
         FORCE, POSITIVE, doc="Greatest force of its spring; unlimited unless given.", default=None
     )
-    brittle = Flag(doc="Whether it breaks at its strength, or yields.", default=True)
-    breaking_elongation = Parameter(
+    brittle: Flag = Flag(doc="Whether it breaks at its strength, or yields.", default=True)
+    breaking_elongation: Parameter[None] = Parameter(
         THICKNESS.like("50 mm"),
         POSITIVE,
         doc="Elongation at which it breaks, in place of a strength; none unless given.",
         default=None,
     )
-    damping = Parameter(
+    damping: Parameter[None] = Parameter(
         DAMPING, NOT_NEGATIVE,
         doc="Damping coefficient of the dashpot; none unless given.", default=None,
     )  # fmt: skip
-    compression = Flag(doc="Whether it takes compression as it takes tension.", default=False)
-
-    def __init__(
-        self,
-        *,
-        on: tuple[QuantityLike, QuantityLike],
-        to: tuple[QuantityLike, QuantityLike],
-        stiffness: QuantityLike,
-        slack: QuantityLike | None = None,
-        preload: QuantityLike | None = None,
-        strength: QuantityLike | None = None,
-        brittle: bool = True,
-        breaking_elongation: QuantityLike | None = None,
-        damping: QuantityLike | None = None,
-        compression: bool = False,
-        on_body: int = DEFAULT_BODY,
-        to_body: int | None = None,
-        name: str | None = None,
-    ) -> None:
-        super().__init__(
-            on=on, to=to, stiffness=stiffness, slack=slack, preload=preload, strength=strength,
-            brittle=brittle, breaking_elongation=breaking_elongation, damping=damping,
-            compression=compression, on_body=on_body,
-            to_body=to_body, name=name,
-        )  # fmt: skip
+    compression: Flag = Flag(doc="Whether it takes compression as it takes tension.", default=False)
 
     def _numbers(self, numbers: SIValues) -> Any:
         faults = list[str]()
@@ -220,45 +195,30 @@ class Tendon(Link):
 
     noun: ClassVar[str] = "tendon"
 
-    stiffness = Parameter(STIFFNESS, POSITIVE, doc="Force over elongation, E A over its length.")
-    preload = Parameter(
+    stiffness: Parameter = Parameter(
+        STIFFNESS, POSITIVE, doc="Force over elongation, E A over its length."
+    )
+    preload: Parameter[None] = Parameter(
         FORCE,
         NOT_NEGATIVE,
         doc="Force while the bodies stand upright under their weight alone; none unless given.",
         default=None,
     )
-    at = Parameter(
+    at: Parameter[str] = Parameter(
         LENGTH.like("0 m"),
         doc="Place in the base, to the right of the middle.", default="0 m",
     )  # fmt: skip
-    depth = Parameter(
+    depth: Parameter[str] = Parameter(
         LENGTH, NOT_NEGATIVE,
         doc="Depth of its anchorage below the base, in a wide duct; on pads and soil it must be "
         "given.", default="0 m",
     )  # fmt: skip
-    strength = Parameter(
+    strength: Parameter[None] = Parameter(
         FORCE, POSITIVE, doc="Greatest force; unlimited unless given.", default=None
     )
-    brittle = Flag(doc="Whether it breaks at its strength, or yields.", default=False)
-    on_body = _body_parameter()
-    name = _name_parameter()
-
-    def __init__(
-        self,
-        *,
-        stiffness: QuantityLike,
-        preload: QuantityLike | None = None,
-        at: QuantityLike = "0 m",
-        depth: QuantityLike = "0 m",
-        strength: QuantityLike | None = None,
-        brittle: bool = False,
-        on_body: int = DEFAULT_BODY,
-        name: str | None = None,
-    ) -> None:
-        super().__init__(
-            stiffness=stiffness, preload=preload, at=at, depth=depth, strength=strength,
-            brittle=brittle, on_body=on_body, name=name,
-        )  # fmt: skip
+    brittle: Flag = Flag(doc="Whether it breaks at its strength, or yields.", default=False)
+    on_body: Count[int] = _body_parameter()
+    name: Text[None] = _name_parameter()
 
     def _numbers(self, numbers: SIValues) -> Any:
         return _check_preload("Tendon", numbers)
@@ -287,31 +247,20 @@ class Load(Link):
 
     noun: ClassVar[str] = "load"
 
-    at = Position(doc="Point of the body.")
-    vertical = Parameter(FORCE, doc="Force downwards; none unless given.", default="0 N")
-    horizontal = Parameter(FORCE, doc="Force to the right; none unless given.", default="0 N")
-    moving_mass = Parameter(
+    at: Position = Position(doc="Point of the body.")
+    vertical: Parameter[str] = Parameter(
+        FORCE, doc="Force downwards; none unless given.", default="0 N"
+    )
+    horizontal: Parameter[str] = Parameter(
+        FORCE, doc="Force to the right; none unless given.", default="0 N"
+    )
+    moving_mass: Parameter[None] = Parameter(
         MASS, NOT_NEGATIVE,
         doc="Mass at the point, a part of the body, with its weight; none unless given.",
         default=None,
     )  # fmt: skip
-    on_body = _body_parameter()
-    name = _name_parameter()
-
-    def __init__(
-        self,
-        *,
-        at: tuple[QuantityLike, QuantityLike],
-        vertical: QuantityLike = "0 N",
-        horizontal: QuantityLike = "0 N",
-        moving_mass: QuantityLike | None = None,
-        on_body: int = DEFAULT_BODY,
-        name: str | None = None,
-    ) -> None:
-        super().__init__(
-            at=at, vertical=vertical, horizontal=horizontal, moving_mass=moving_mass,
-            on_body=on_body, name=name,
-        )  # fmt: skip
+    on_body: Count[int] = _body_parameter()
+    name: Text[None] = _name_parameter()
 
     def _numbers(self, numbers: SIValues) -> Any:
         if not (numbers.vertical or numbers.horizontal) and numbers.moving_mass is None:
@@ -354,7 +303,7 @@ RESTITUTION_RANGE = Condition("from 0 to 1", lambda value: 0.0 <= value <= 1.0)
 _ELASTIC_PARAMETERS: Final = ("damping", "gap", "height")
 
 
-class _ReboundParameter(Declared[Any, Any]):
+class _ReboundParameter(Declared[Any, WallImpactLike, WallImpact]):
     """A parameter that is the name of a law, or a ratio."""
 
     written_as = '{"sorrentino", "newton"} or float'
@@ -409,58 +358,43 @@ class RearWall(Link):
 
     noun: ClassVar[str] = "wall"
 
-    side = Choice(WallSide.LEFT, doc="Side of the wall; the body rocks to the other side.")
-    restitution = _ReboundParameter(
+    side: Choice[WallSide, SideLike] = Choice(
+        WallSide.LEFT, doc="Side of the wall; the body rocks to the other side."
+    )
+    restitution: _ReboundParameter = _ReboundParameter(
         doc="Ratio of the angular velocities after and before an impact: a law, "
         '"sorrentino" (impacts on the base, on the wall and on the base again) or "newton" (the '
         "same with a coefficient of the wall); or the ratio itself, zero or negative.",
         default=WallImpact.SORRENTINO,
     )
-    wall_restitution = Ratio(
+    wall_restitution: Ratio[None] = Ratio(
         RESTITUTION_RANGE,
         doc='Coefficient of the wall, of the law "newton"; 0 for a wall that stops the body.',
         default=None,
         example="0.3",
     )
 
-    stiffness = Parameter(
+    stiffness: Parameter[None] = Parameter(
         STIFFNESS,
         POSITIVE,
         doc="Stiffness of an elastic wall; the wall is rigid unless given.",
         default=None,
     )
-    damping = Parameter(
+    damping: Parameter[None] = Parameter(
         DAMPING, NOT_NEGATIVE,
         doc="Damping coefficient of an elastic wall during contact; none unless given.",
         default=None,
     )  # fmt: skip
-    gap = Parameter(
+    gap: Parameter[None] = Parameter(
         THICKNESS.like("5 mm"), NOT_NEGATIVE,
         doc="Distance from the upright body to an elastic wall; none unless given.", default=None,
     )  # fmt: skip
-    height = Parameter(
+    height: Parameter[None] = Parameter(
         LENGTH, POSITIVE,
         doc="Height above its base at which a body touches an elastic wall; its top unless given.",
         default=None,
     )  # fmt: skip
-    on_body = _body_parameter()
-
-    def __init__(
-        self,
-        *,
-        side: SideLike = WallSide.LEFT,
-        restitution: WallImpactLike = WallImpact.SORRENTINO,
-        wall_restitution: RatioLike | None = None,
-        stiffness: QuantityLike | None = None,
-        damping: QuantityLike | None = None,
-        gap: QuantityLike | None = None,
-        height: QuantityLike | None = None,
-        on_body: int = DEFAULT_BODY,
-    ) -> None:
-        super().__init__(
-            side=side, restitution=restitution, wall_restitution=wall_restitution,
-            stiffness=stiffness, damping=damping, gap=gap, height=height, on_body=on_body,
-        )  # fmt: skip
+    on_body: Count[int] = _body_parameter()
 
     @property
     def elastic(self) -> bool:

@@ -2,8 +2,21 @@
 
 import re
 from enum import Enum, StrEnum
+from inspect import Parameter as Argument
 from types import SimpleNamespace
-from typing import TYPE_CHECKING, Any, ClassVar, Final, Generic, NoReturn, Self, TypeVar, overload
+from typing import (
+    TYPE_CHECKING,
+    Any,
+    ClassVar,
+    Final,
+    Generic,
+    Literal,
+    NoReturn,
+    Self,
+    TypeAlias,
+    TypeVar,
+    overload,
+)  # fmt: skip
 
 import numpy as np
 
@@ -35,18 +48,22 @@ class Missing(Enum):
 
 REQUIRED: Final = Missing.REQUIRED
 DERIVED: Final = Missing.DERIVED
+Derived: TypeAlias = Literal[Missing.DERIVED] | None
+"""Type of the default ``DERIVED``."""
 
 PublicValue = TypeVar("PublicValue")
-if TYPE_CHECKING:  # mypy does not infer it from the default of an argument
+Accepted = TypeVar("Accepted")
+if TYPE_CHECKING:
     from typing_extensions import TypeVar as TypeVarWithDefault
 
     Default = TypeVarWithDefault("Default", default=Missing)
+    Numbers = TypeVarWithDefault("Numbers", default=Any)
 else:
-    Default = TypeVar("Default")
+    Default, Numbers = TypeVar("Default"), TypeVar("Numbers")
 Option = TypeVar("Option", bound=StrEnum)
 
 
-class Declared(Generic[PublicValue, Default]):
+class Declared(Generic[PublicValue, Accepted, Default]):
     """A parameter of a component: an argument of its constructor, and a property.
 
     Parameters
@@ -98,7 +115,7 @@ class Declared(Generic[PublicValue, Default]):
     def __get__(self, instance: None, owner: type) -> Self: ...
     @overload
     def __get__(
-        self: "Declared[PublicValue, None]", instance: object, owner: type
+        self: "Declared[PublicValue, Accepted, None]", instance: object, owner: type
     ) -> PublicValue | None: ...
     @overload
     def __get__(self, instance: object, owner: type) -> PublicValue: ...
@@ -109,9 +126,24 @@ class Declared(Generic[PublicValue, Default]):
         value = getattr(source, self.name)
         return None if value is None else self.public(value)
 
-    def __set__(self, instance: object, value: Any) -> NoReturn:
+    def __set__(self, instance: object, value: Accepted | Default) -> NoReturn:
         msg = f"{type(instance).__name__} is immutable; build a new one to change {self.name}"
         raise AccessError(msg)
+
+    @property
+    def default_argument(self) -> Any:
+        """The default in the signature; `inspect.Parameter.empty` for a required one."""
+        if self.default is REQUIRED:
+            return Argument.empty
+        return None if self.default is DERIVED else self.default
+
+    @property
+    def argument(self) -> Argument:
+        """The argument in the signature of the constructor."""
+        kind = self.annotation | None if self.default_argument is None else self.annotation
+        return Argument(
+            self.name, Argument.KEYWORD_ONLY, default=self.default_argument, annotation=kind
+        )
 
     def accept(self, value: object, owner: str) -> Any:
         """Read an argument that may be None if it is optional; messages begin with `owner`."""
@@ -135,7 +167,7 @@ class Declared(Generic[PublicValue, Default]):
         return None
 
 
-class Parameter(Declared[Quantity, Default]):
+class Parameter(Declared[Quantity, QuantityLike, Default]):
     """A parameter with a unit.
 
     Parameters
@@ -155,7 +187,7 @@ class Parameter(Declared[Quantity, Default]):
     >>> from rockframe.components import Component
     >>> from rockframe.units import FORCE
     >>> class Anchor(Component):
-    ...     strength = Parameter(FORCE, doc="Force at which it breaks.")
+    ...     strength: Parameter = Parameter(FORCE, doc="Force at which it breaks.")
     >>> print(Anchor(strength="3 kN").strength)
     3000.0 newton
     >>> strength = Anchor.declared()["strength"]
@@ -193,7 +225,7 @@ class Parameter(Declared[Quantity, Default]):
         return quantity(value, self.measure)
 
 
-class Ratio(Declared[float, Default]):
+class Ratio(Declared[float, RatioLike, Default]):
     """A parameter that is a pure number.
 
     Parameters
@@ -212,7 +244,7 @@ class Ratio(Declared[float, Default]):
     --------
     >>> from rockframe.components import Component
     >>> class Slab(Component):
-    ...     friction = Ratio(doc="Coefficient of friction.", default=0.3)
+    ...     friction: Ratio[float] = Ratio(doc="Coefficient of friction.", default=0.3)
     >>> Slab(friction="40 %").friction, Slab().friction
     (0.4, 0.3)
     >>> friction = Slab.declared()["friction"]
@@ -244,7 +276,7 @@ class Ratio(Declared[float, Default]):
         )
 
 
-class Choice(Declared[Option, Option]):
+class Choice(Declared[Option, Accepted, Option]):
     """A parameter that is one of a few words; descriptions leave out the default.
 
     Parameters
@@ -260,15 +292,13 @@ class Choice(Declared[Option, Option]):
     >>> from rockframe.components import Component
     >>> Side = StrEnum("Side", ["LEFT", "RIGHT"])
     >>> class Latch(Component):
-    ...     side = Choice(Side.LEFT, doc="Where it is.")
+    ...     side: Choice[Side, str] = Choice(Side.LEFT, doc="Where it is.")
     >>> Latch(side="right"), Latch(side="left")
     (Latch(side='right'), Latch())
     >>> side = Latch.declared()["side"]
     >>> side.read("right", "Latch") is Side.RIGHT, side.write(Side.RIGHT)
     (True, 'right')
     """
-
-    annotation = str
 
     @with_hints()
     def __init__(self, default: Option, *, doc: str) -> None:
@@ -278,6 +308,7 @@ class Choice(Declared[Option, Option]):
             )
             raise ComponentError(msg)
         super().__init__(doc=doc, default=default)
+        self.annotation = type(default) | str
         self.written_as = "{" + ", ".join(f'"{word}"' for word in type(default)) + "}"
 
     def read(self, value: object, owner: str) -> Option:
@@ -289,7 +320,7 @@ class Choice(Declared[Option, Option]):
         return None if value is self.default else str(value)
 
 
-class Text(Declared[str, Default]):
+class Text(Declared[str, str, Default]):
     """A parameter that is a text.
 
     Parameters
@@ -303,7 +334,7 @@ class Text(Declared[str, Default]):
     --------
     >>> from rockframe.components import Component
     >>> class Bolt(Component):
-    ...     name = Text(doc="What it is called.", default=None)
+    ...     name: Text[None] = Text(doc="What it is called.", default=None)
     >>> Bolt(name="B1").name, Bolt().name, Bolt.declared()["name"].read("B2", "Bolt")
     ('B1', None, 'B2')
     """
@@ -333,7 +364,7 @@ class Text(Declared[str, Default]):
         raise ComponentError(msg)
 
 
-class Flag(Declared[bool, bool]):
+class Flag(Declared[bool, bool, bool]):
     """A parameter that is true or false; descriptions leave out the default."""
 
     written_as = "bool"
@@ -358,7 +389,7 @@ MAX_COUNT: Final = 1_000_000
 _BOOLEANS: Final = {"true": True, "false": False}
 
 
-class Count(Declared[int, Default]):
+class Count(Declared[int, int, Default]):
     """A parameter that is a positive whole number."""
 
     written_as = "int"
@@ -379,7 +410,7 @@ class Count(Declared[int, Default]):
         return None if value == self.default else value
 
 
-class Position(Declared[tuple[Quantity, Quantity], Missing]):
+class Position(Declared[tuple[Quantity, Quantity], tuple[QuantityLike, QuantityLike], Missing]):
     """A parameter that is a point: its coordinates to the right and upwards."""
 
     single = False
@@ -429,31 +460,6 @@ class SIValues(SimpleNamespace):
     def __delattr__(self, name: str) -> NoReturn:
         msg = f"values of a component are immutable; {name} cannot be deleted"
         raise AccessError(msg)
-
-
-def static_friction_parameter(of: str) -> Ratio[None]:
-    """Declare a static coefficient of friction under a body."""
-    words = f"Coefficient of friction under {of} while it does not slip; without one it is held."
-    return Ratio(NOT_NEGATIVE, doc=words, default=None, example="0.5")
-
-
-def kinetic_friction_parameter() -> Ratio[None]:
-    """Declare a kinetic coefficient of friction."""
-    words = "Kinetic coefficient of friction, of slip; the static one unless given."
-    return Ratio(NOT_NEGATIVE, doc=words, default=None, example="0.45")
-
-
-def check_frictions(owner: str, numbers: SIValues) -> SIValues:
-    """Refuse a kinetic friction without a static one, or above it."""
-    static, kinetic = numbers.friction, numbers.kinetic_friction
-    if kinetic is not None and (static is None or kinetic > static):
-        found = "is not given" if static is None else f"is {static:.6g}"
-        msg = (
-            f"{owner}: kinetic_friction must be at most the friction at rest, which {found}; got "
-            f"{kinetic:.6g}"
-        )
-        raise ComponentError(msg)
-    return numbers
 
 
 CRITICAL_DAMPING_RATIO: Final = 1.0

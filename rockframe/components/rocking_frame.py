@@ -22,7 +22,7 @@ BEAM_HEIGHT_RATIO: Final = 0.2
 _COLUMN_SUFFIX: Final = " of column"
 
 
-class _BlockParameter(Declared[Block, Missing]):
+class _BlockParameter(Declared[Block, Block, Missing]):
     """A parameter that is a block."""
 
     single = False
@@ -60,7 +60,7 @@ class RockingFrameSI:
     beam_height: float  # height of the beam in drawings [m]
 
 
-class RockingFrame(Component):
+class RockingFrame(Component[RockingFrameSI]):
     """Equal columns that rock together under a rigid beam, like those of a bridge bent.
 
     The columns stand free on the ground, and the beam lies free on the columns. All columns rotate
@@ -84,19 +84,18 @@ class RockingFrame(Component):
     200.0 metric_ton
     """
 
-    si: RockingFrameSI
     noun: ClassVar[str] = "frame"
 
-    column = _BlockParameter(doc="One of the equal columns.")
-    columns = Count(doc="Number of columns, at least 2.")
-    beam_mass = Parameter(MASS, NOT_NEGATIVE, doc="Mass of the beam and of its load.")
-    spacing = Parameter(
+    column: _BlockParameter = _BlockParameter(doc="One of the equal columns.")
+    columns: Count = Count(doc="Number of columns, at least 2.")
+    beam_mass: Parameter = Parameter(MASS, NOT_NEGATIVE, doc="Mass of the beam and of its load.")
+    spacing: Parameter[None] = Parameter(
         LENGTH,
         POSITIVE,
         doc="Distance between the axes of columns, for drawings only; their height unless given.",
         default=None,
     )
-    beam_height = Parameter(
+    beam_height: Parameter[None] = Parameter(
         LENGTH,
         POSITIVE,
         doc="Height of the beam, for drawings only; 0.2 times that of the columns unless given.",

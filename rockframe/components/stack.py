@@ -28,7 +28,7 @@ class StackSI:
     offsets: tuple[float, ...]
 
 
-class Stack(Component):
+class Stack(Component[StackSI]):
     """A stack of blocks, each with its own base on the top of the block below.
 
     Parameters
@@ -62,7 +62,6 @@ class Stack(Component):
     True
     """
 
-    si: StackSI
     noun: ClassVar[str] = "stack"
 
     def __init__(

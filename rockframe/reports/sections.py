@@ -278,7 +278,7 @@ def _parameter_rows(part: Component, units: DisplayUnits) -> list[tuple[str, str
     ]
 
 
-def _meaning(argument: Declared[Any, Any]) -> str:
+def _meaning(argument: Declared[Any, Any, Any]) -> str:
     words = argument.words.split(" [")[0].rstrip(".")
     return (
         words if argument.condition is None else words.removesuffix(f"; {argument.condition.words}")

@@ -14,15 +14,15 @@ class Stop(Component):
 
     noun = "stop"
 
-    gap = Parameter(LENGTH, NOT_NEGATIVE, doc="Distance before it is touched.")
-    strength = Parameter(FORCE, POSITIVE, doc="Force at which it breaks.")
-    friction = Ratio(NOT_NEGATIVE, doc="Coefficient of friction.", default=0.3)
+    gap: Parameter = Parameter(LENGTH, NOT_NEGATIVE, doc="Distance before it is touched.")
+    strength: Parameter = Parameter(FORCE, POSITIVE, doc="Force at which it breaks.")
+    friction: Ratio[float] = Ratio(NOT_NEGATIVE, doc="Coefficient of friction.", default=0.3)
 
 
 class BreakingPads(rf.TwoSpringSupport):
     """Pads that break."""
 
-    strength = Parameter(FORCE, POSITIVE, doc="Force at which a pad breaks.")
+    strength: Parameter = Parameter(FORCE, POSITIVE, doc="Force at which a pad breaks.")
 
 
 class HeavyBlock(rf.Block):
@@ -32,7 +32,7 @@ class HeavyBlock(rf.Block):
 class RoundedBlock(rf.Block):
     """A block with round corners, whose parameter has the name of a property of blocks."""
 
-    radius = Parameter(LENGTH, POSITIVE, doc="Radius of the corners.")
+    radius: Parameter = Parameter(LENGTH, POSITIVE, doc="Radius of the corners.")
 
 
 SHARES = {"pads": 1.0, 2: "which numba has no type for"}

@@ -259,7 +259,7 @@ def check_table(
     where: KeyPath,
     table: Mapping[str, Any],
     known: Mapping[str, bool],
-    declared: Mapping[str, Declared[Any, Any]] | None = None,
+    declared: Mapping[str, Declared[Any, Any, Any]] | None = None,
     hints: Mapping[str, str] | None = None,
 ) -> bool:
     """Note unknown keys, missing keys and values that cannot be read; false if there are any."""
@@ -300,7 +300,7 @@ def call_with_table(
     return None
 
 
-def _missing_key_note(field: Declared[Any, Any] | None) -> str:
+def _missing_key_note(field: Declared[Any, Any, Any] | None) -> str:
     if field is None:
         return ""
     if field.measure is None:

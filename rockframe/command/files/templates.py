@@ -250,7 +250,7 @@ def _component_lines(
             yield from _commented_key(f"# {name} = {_example(field)}", meaning)
 
 
-def _example(field: Declared[Any, Any]) -> str:
+def _example(field: Declared[Any, Any, Any]) -> str:
     if isinstance(field, Choice):
         return f'"{field.default}"'
     if field.measure is None:

@@ -162,7 +162,7 @@ class SystemScene:
 
     def _parts_with(
         self, parameter: str, kind: str, parts: Mapping[str, Component]
-    ) -> list[tuple[str, Component, Declared[Any, Any]]]:
+    ) -> list[tuple[str, Component, Declared[Any, Any, Any]]]:
         """Return the parts that have a parameter, with their slots and its declaration."""
         return [
             (slot, part, part.varied()[parameter])
@@ -367,7 +367,7 @@ def _option_value(name: str, value: Any) -> Any:
 
 
 def _declared_values(
-    value: object, field: Declared[Any, Any], name: str
+    value: object, field: Declared[Any, Any, Any], name: str
 ) -> tuple[AnyArray, str | None]:
     if isinstance(field, Count):
         numbers = read_numbers(value, Measure("a whole number", Unit.ONE, "2"), name)
@@ -379,7 +379,7 @@ def _declared_values(
     return read_numbers(value, field.measure, name), str(field.measure.unit)
 
 
-def _warn_of_unusual_values(field: Declared[Any, Any], values: AnyArray, owner: str) -> None:
+def _warn_of_unusual_values(field: Declared[Any, Any, Any], values: AnyArray, owner: str) -> None:
     """Warn of unusual values, as the part itself would."""
     if isinstance(field, Choice | Text) or type(field).caution is Declared.caution:
         return
