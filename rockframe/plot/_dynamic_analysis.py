@@ -53,9 +53,10 @@ def _single_structure(dataset: xr.Dataset, variable: str, function: str, named: 
     dims = [str(dim) for dim in dataset[variable].dims if dim not in ("limit_state", "motion")]
     several = [dim for dim in dims if dataset.sizes[dim] > 1]
     if several:
+        counts = ", ".join(f"{dim} ({dataset.sizes[dim]})" for dim in several)
         msg = (
-            f"rf.plot.{function}: found several structures, by {', '.join(several)}; pick one, "
-            f"for example with {named}.isel({several[0]}=0)"
+            f"rf.plot.{function}: found several structures, by {counts}; pick one, for example "
+            f"with {named}.isel({several[0]}=0)"
         )
         raise SchemaError(msg)
     return dataset.squeeze(dims)

@@ -4,8 +4,8 @@ import base64
 import sys
 from collections.abc import Callable, Iterable, Sequence
 from html import escape
+from importlib import resources
 from io import BytesIO
-from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final, cast
 
 from rockframe.version import __version__
@@ -26,12 +26,12 @@ MAX_DRAWING_SIZE: Final = 1_500_000
 _MAX_VALUE_LENGTH: Final = 14
 """Longest content of a cell that is kept in one line [characters]."""
 _POLICY: Final = "default-src 'none'; img-src data:; style-src 'unsafe-inline'"
-_STYLE: Final = Path(__file__).with_name("page.css")
+_STYLE: Final = "page.css"
 
 
 def html_page(title: str, body: Iterable[str]) -> str:
     """Return the whole page."""
-    style = _STYLE.read_text(encoding="utf-8")
+    style = resources.files("rockframe.reports").joinpath(_STYLE).read_text(encoding="utf-8")
     head = (
         '<!DOCTYPE html>\n<html lang="en">\n<head>\n<meta charset="utf-8">\n'
         f"{generator_tag('report', __version__)}\n"
