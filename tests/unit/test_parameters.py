@@ -13,6 +13,7 @@ import rockframe as rf
 from rockframe.components import Component, Member, Ratio, RegularFrame, component_from_dict
 from rockframe.components.parameters import REQUIRED
 from rockframe.errors import AssemblyError, ComponentError, ModelWarning, SchemaError, UnitsError
+from rockframe.units import QuantityLike
 
 pytestmark = pytest.mark.unit
 
@@ -30,6 +31,15 @@ FRAME = RegularFrame(
 TILTED = rf.InitialState(rotation="5 deg")
 KINDS = [type(part) for part in (PADS, SOIL, CAP, BLOCK, MEMBER, FRAME, TILTED, rf.RigidGround())]
 KINDS.append(rf.FrameEquivalent)
+
+
+def test_only_arguments_that_may_be_left_out_may_be_none():
+    signature = inspect.signature(rf.CushionCap)
+    height, mass = signature.parameters["height"], signature.parameters["mass"]
+    assert (height.annotation, height.default) == (QuantityLike, inspect.Parameter.empty)
+    assert (mass.annotation, mass.default) == (QuantityLike | None, None)
+    assert inspect.signature(Member).parameters["inertia"].annotation == QuantityLike | None
+    assert signature.return_annotation is None
 
 
 @pytest.mark.parametrize(
