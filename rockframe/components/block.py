@@ -43,13 +43,16 @@ _SIZES: Final = frozenset({"width", "height", "mass"})
 _SIDES: Final = ("width", "height")
 
 
+class _SizeParameters:
+    """Quantities that determine width and height together, as in :meth:`Block.from_size`."""
+
+    radius = Parameter(LENGTH, POSITIVE, doc="R0, distance from a corner to the centre of mass.")
+    slenderness = Ratio(POSITIVE, doc="Height over width, H/B.", example="4")
+
+
 _SIZE_PARAMETERS: Final = {
-    "radius": Parameter(LENGTH, POSITIVE, doc="R0, distance from a corner to the centre of mass."),
-    "slenderness": Ratio(POSITIVE, doc="Height over width, H/B.", example="4"),
+    name: value for name, value in vars(_SizeParameters).items() if isinstance(value, Declared)
 }
-"""Quantities that determine width and height together, as in :meth:`Block.from_size`."""
-for _name, _parameter in _SIZE_PARAMETERS.items():
-    _parameter.name = _name
 
 
 class Block(Component[BlockSI]):

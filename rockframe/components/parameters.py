@@ -16,7 +16,7 @@ from typing import (
     TypeAlias,
     TypeVar,
     overload,
-)  # fmt: skip
+)
 
 import numpy as np
 
