@@ -53,9 +53,9 @@ def verdict_sections(
         ("Numbers", [page.parameter_table(scalars)] if scalars else ()),
         ("Limit states", _limit_state_table(dataset, units)),
     ):
-        found = [*pieces]
-        if found:
-            yield page.section(title, found)
+        elements = [*pieces]
+        if elements:
+            yield page.section(title, elements)
 
 
 def worst_case(
