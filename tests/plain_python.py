@@ -9,6 +9,7 @@ from typing import Any
 
 import pytest
 
+from rockframe.compiled.bound import BoundFunction
 from rockframe.compiled.entries import Entry
 
 
@@ -21,6 +22,9 @@ def plain_python(*entries: Callable[..., Any]) -> Iterator[None]:
     """
     called = Entry.__call__
 
+    def call_python(function: BoundFunction, *arguments: Any) -> Any:
+        return function.source.function(function._bundle, *arguments[:-1])
+
     def call(entry: Entry, *arguments: Any) -> Any:
         if entries and entry not in entries:
             return called(entry, *arguments)
@@ -28,4 +32,5 @@ def plain_python(*entries: Callable[..., Any]) -> Iterator[None]:
 
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(Entry, "__call__", call)
+        patch.setattr(BoundFunction, "call", call_python)
         yield

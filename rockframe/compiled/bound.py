@@ -5,15 +5,13 @@ argument is a vector of the numbers of the tuple.
 """
 
 from collections.abc import Callable, Iterator
-from functools import cache, cached_property
-from typing import TYPE_CHECKING, Any, cast
+from typing import Any, cast
 
 import numpy as np
 
+from rockframe.compiled.callbacks import call_machine_code, python_callback
 from rockframe.compiled.language import Vector, tuple_from
-
-if TYPE_CHECKING:
-    from rockframe.compiled.jobs import Job
+from rockframe.compiled.sources import BoundSource, bound_source
 
 
 def numbers_in(bundle: Any) -> Vector:
@@ -41,63 +39,6 @@ def structure_of(bundle: Any) -> tuple[Any, ...]:
     ))  # fmt: skip
 
 
-class Signature:
-    """Numba's signature of a function, with its hash, which each call of an entry uses."""
-
-    def __init__(self, value: Any) -> None:
-        self.value = value
-        self._hash = hash(value)
-
-    def __hash__(self) -> int:
-        return self._hash
-
-    def __eq__(self, other: object) -> bool:
-        return self is other or (isinstance(other, Signature) and self.value == other.value)
-
-
-_shared = cache(Signature)
-
-
-class BoundSource:
-    """A function and the structure of the tuples that it is bound to: what is compiled once.
-
-    A function that is rarely called may run as plain Python until it pays to compile it.
-    """
-
-    def __init__(
-        self,
-        function: Callable[..., Any],
-        structure: tuple[Any, ...],
-        in_lanes: bool,
-        rarely_called: bool,
-    ) -> None:
-        self.function = function
-        self.structure = structure
-        self.in_lanes = in_lanes
-        self.is_rarely_called = rarely_called
-        self.code: Any = None  # the compiled function, or None
-        self.address = 0  # its address, or 0
-        self.failed = False  # whether it could not be compiled
-        self.fallback_seconds = 0.0  # time spent in what stands in for its machine code [s]
-
-    @cached_property
-    def job(self) -> "Job":
-        """The job that compiles it."""
-        from rockframe.compiled.jobs import Job
-
-        return Job(self.function, self.structure, True, self.in_lanes)
-
-    @cached_property
-    def signature(self) -> Signature:
-        """Its signature; functions of equal signatures share one."""
-        from rockframe.compiled.jobs import signature_of
-
-        return _shared(signature_of(self.function))
-
-
-_bound_source = cache(BoundSource)
-
-
 class BoundFunction:
     """A function bound to a tuple: called in plain Python, or by entries as machine code.
 
@@ -114,8 +55,25 @@ class BoundFunction:
         self.fallback_for = fallback_for
 
     def call(self, *arguments: Any) -> Any:
-        """Call the function with its tuple; the last argument, the tuple's numbers, is ignored."""
+        """Call the function with its tuple, the numbers of which are the last argument."""
+        if self.source.address:
+            return call_machine_code(self.source, [*_words_of(arguments)])
         return self.source.function(self._bundle, *arguments[:-1])
+
+
+def _words_of(argument: Any) -> Iterator[Any]:
+    """Return the words that pass an argument to machine code."""
+    if isinstance(argument, tuple):
+        for part in cast("tuple[Any, ...]", argument):
+            yield from _words_of(part)
+    elif isinstance(argument, memoryview | np.ndarray):
+        array = np.asarray(argument)
+        yield array.__array_interface__["data"][0]
+        yield from array.shape
+    elif isinstance(argument, BoundFunction):
+        yield argument.source.address or python_callback(argument.source).address
+    else:
+        yield argument
 
 
 def bind(
@@ -132,9 +90,7 @@ def bind(
     """
     structure, bundle = structure_of(bundle), _with_own_arrays(bundle)
     return tuple(
-        BoundFunction(
-            _bound_source(function, structure, False, rarely_called), bundle, fallback_for
-        )
+        BoundFunction(bound_source(function, structure, False, rarely_called), bundle, fallback_for)
         for function in functions
     )
 
@@ -150,4 +106,4 @@ def _with_own_arrays(value: Any) -> Any:
 def bind_in_lanes(function: Callable[..., Any], bundle: Any) -> BoundFunction:
     """Bind a function to the class of a tuple; each lane has its own numbers of it."""
     structure = structure_of(bundle)
-    return BoundFunction(_bound_source(function, structure, True, False), tuple_from(structure))
+    return BoundFunction(bound_source(function, structure, True, False), tuple_from(structure))

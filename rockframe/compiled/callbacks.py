@@ -1,8 +1,10 @@
-"""Python functions that machine code calls back, as long as it does not pay to compile them.
+"""Calls of machine code from plain Python, and of Python from machine code.
 
-Functions that are called at events only may take half of the time of compilation, but a thousandth
-of the time of a run. Compiled code calls them like any bound function, by an address; a buffer is
-passed as its address and its lengths.
+Functions that are called at events only, and the loops around those that steps call, may take half
+of the time of compilation, but a small part of the time of a run. As long as it does not pay to
+compile them, they run as Python: machine code calls them like any bound function, by an address,
+and they call machine code so. A buffer is passed as its address and its lengths, a tuple as its
+elements.
 """
 
 import ctypes
@@ -11,10 +13,10 @@ import threading
 from collections.abc import Callable
 from functools import cache
 from time import perf_counter
-from typing import Any, Final, get_type_hints
+from typing import Annotated, Any, Final, get_origin, get_type_hints
 
-from rockframe.compiled.bound import BoundSource
 from rockframe.compiled.language import Integers, ReadOnlyMatrix, Vector, tuple_from
+from rockframe.compiled.sources import BoundSource
 
 _WORD: Final = ctypes.c_int64
 _NUMBERS: Final[dict[Any, Any]] = {int: _WORD, float: ctypes.c_double, type(None): None}
@@ -41,12 +43,7 @@ class PythonCallback:
 
     def __init__(self, source: BoundSource) -> None:
         make_tuple = tuple_from(source.structure)
-        hints = get_type_hints(source.function, include_extras=True)
-        names = [*inspect.signature(source.function).parameters][1:]
-        types = [*(hints[name] for name in names), Vector]
-        words: list[Any] = []
-        for kind in types:
-            words += [_NUMBERS[kind]] if kind in _NUMBERS else [_WORD] * (1 + _BUFFERS[kind][2])
+        types = _argument_types(source)
 
         def callback(*words: Any) -> Any:
             started = perf_counter()
@@ -59,7 +56,7 @@ class PythonCallback:
             finally:
                 source.fallback_seconds += perf_counter() - started
 
-        self._c_function = ctypes.CFUNCTYPE(_NUMBERS[hints["return"]], *words)(callback)
+        self._c_function = c_signature(source)(callback)
         self.address = ctypes.cast(self._c_function, ctypes.c_void_p).value or 0
 
 
@@ -85,11 +82,46 @@ def _arguments(types: list[Any], words: tuple[Any, ...]) -> list[Any]:
     return arguments
 
 
+def _argument_types(source: BoundSource) -> list[Any]:
+    """Return the annotations of what a bound function is called with."""
+    hints = get_type_hints(source.function, include_extras=True)
+    names = [*inspect.signature(source.function).parameters][1:]
+    return [*(hints[name] for name in names), Vector]
+
+
+def c_signature(source: BoundSource) -> Any:
+    """Return the C type of a bound function."""
+    words = [word for type_ in _argument_types(source) for word in _words_of_type(type_)]
+    return ctypes.CFUNCTYPE(_NUMBERS[get_type_hints(source.function)["return"]], *words)
+
+
+def _words_of_type(type_: Any) -> list[Any]:
+    """Return the C types of the words that pass an argument."""
+    if type_ in _NUMBERS:
+        return [_NUMBERS[type_]]
+    if type_ in _BUFFERS:
+        return [_WORD] * (1 + _BUFFERS[type_][2])
+    if get_origin(type_) is Annotated:  # a bound function
+        return [_WORD]
+    hints = get_type_hints(type_, include_extras=True)
+    return [word for name in type_._fields for word in _words_of_type(hints[name])]
+
+
+def call_machine_code(source: BoundSource, words: list[Any]) -> Any:
+    """Call a bound function that is compiled, from plain Python, with the words to pass."""
+    return run_and_raise(_machine_code(source, source.address), words)
+
+
+@cache
+def _machine_code(source: BoundSource, address: int) -> Callable[..., Any]:
+    return c_signature(source)(address)
+
+
 def run_and_raise(routine: Callable[..., Any], words: list[Any]) -> Any:
     """Run machine code, then raise the first exception of a function that it called back."""
-    _raised.first = None
+    before, _raised.first = _raised.first, None
     result = routine(*words)
-    raised, _raised.first = _raised.first, None
+    raised, _raised.first = _raised.first, before
     if raised is not None:
         raise raised
     return result

@@ -7,24 +7,24 @@ types of its arrays and numbers.
 import logging
 import os
 import re
-from collections.abc import Callable, Generator
-from contextlib import contextmanager, nullcontext
+from collections.abc import Callable, Generator, Sequence
+from contextlib import contextmanager
 from functools import cache, update_wrapper, wraps
 from importlib import import_module
 from importlib.util import find_spec
 from pathlib import Path
 from threading import RLock
-from time import perf_counter
+from time import perf_counter, thread_time
 from typing import TYPE_CHECKING, Any, Final, ParamSpec, TypeVar, cast
 
 import numpy as np
 
-from rockframe.compiled.bound import BoundFunction, BoundSource
+from rockframe.compiled.bound import BoundFunction
 from rockframe.compiled.callbacks import python_callback, run_and_raise
 from rockframe.compiled.language import PURPOSE, PYTHON_SECONDS, REMAINING_SECONDS, Vector, inlined
+from rockframe.compiled.sources import BoundSource, CompilationUnit
 
 if TYPE_CHECKING:
-    from rockframe.compiled.jobs import Job
     from rockframe.compiled.parallel import BackgroundCompilation
 
 
@@ -164,7 +164,7 @@ class Entry:
         self._plain = _as_python(function)
         self._waits = waits
         self._calls_back = calls_back
-        self._routines: dict[tuple[Any, ...], Callable[..., Any] | None] = {}
+        self._routines: dict[tuple[Any, ...], CompilationUnit] = {}
         self._compilations: dict[Any, BackgroundCompilation] = {}
         update_wrapper(self, function)
 
@@ -175,37 +175,54 @@ class Entry:
         words: list[Any] = []
         sources: list[BoundSource] = []
         structure = tuple(_structure_of(argument, words, sources) for argument in arguments)
-        routine = self._routines.get(structure)
-        if routine is not None and all(source.address for source in sources):
-            return routine(*words)
-        needed, rare = self._needed(sources)
+        routine = self._routine(structure)
+        if routine.code is not None and all(source.address for source in sources):
+            return routine.code(*words)
+        needed, later = self._needed(routine, sources)
         with _lock:
-            compilation = None
-            if not self._waits:
-                compilation = self._background_compilation(structure, needed, rare)
+            compilation = None if self._waits else self._background_compilation(needed, later)
             ready = compilation is None or compilation.is_due()
-            routine = self._compiled(structure, needed) if ready else None
-            if routine is not None:
+            if ready and _all_compiled(needed):
                 from rockframe.compiled.parallel import START_AFTER
 
-                for source in rare:
-                    share = CALLBACK_SHARE * source.job.seconds
-                    _compile_when_due(source, share if WAITS else START_AFTER)
-        if routine is None:
-            with compilation or nullcontext():
+                for rest in later:
+                    share = CALLBACK_SHARE * rest.job.seconds
+                    _compile_when_due(rest, share if WAITS else START_AFTER)
+        if routine.code is None or any(unit.code is None for unit in needed):
+            with compilation or _standing_in_for(routine):
                 return self._plain(*arguments)
         words = [
             word.address or python_callback(word).address if isinstance(word, BoundSource) else word
             for word in words
         ]
-        return run_and_raise(routine, words)
+        return run_and_raise(routine.code, words)
 
-    def _needed(self, sources: list[BoundSource]) -> tuple[list[BoundSource], list[BoundSource]]:
-        """Return the bound functions to compile before this runs, and those to call back."""
-        rare: list[BoundSource] = []
-        if self._calls_back:
-            rare = [source for source in _missing(sources) if source.is_rarely_called]
-        return [source for source in sources if source not in rare], rare
+    def _routine(self, structure: tuple[Any, ...]) -> CompilationUnit:
+        routine = self._routines.get(structure)
+        if routine is None:
+            routine = self._routines.setdefault(structure, CompilationUnit(self.source, structure))
+        return routine
+
+    def _needed(
+        self, routine: CompilationUnit, sources: list[BoundSource]
+    ) -> tuple[list[CompilationUnit], list[CompilationUnit]]:
+        """Return what to compile before this runs as machine code, and what may wait.
+
+        An entry in the background waits for the functions that are often called, but runs as
+        Python around them until the entry itself is compiled, if that takes more than a moment.
+        """
+        missing = _missing([*sources, routine])
+        if not self._calls_back:
+            return missing, []
+        later = [unit for unit in missing if self._may_wait(unit)]
+        return [unit for unit in missing if unit not in later], later
+
+    def _may_wait(self, unit: CompilationUnit) -> bool:
+        from rockframe.compiled.parallel import START_AFTER
+
+        if isinstance(unit, BoundSource):
+            return unit.is_rarely_called
+        return not self._waits and unit.job.seconds >= START_AFTER
 
     def is_compiled_within(self, patience: float, arguments: tuple[Any, ...]) -> bool:
         """See :func:`compiled_within`."""
@@ -215,104 +232,95 @@ class Entry:
 
         sources: list[BoundSource] = []
         structure = tuple(_structure_of(argument, [], sources) for argument in arguments)
-        sources, rare = self._needed(sources)
+        missing = _missing([*sources, self._routine(structure)])
         with _lock:
-            if estimate_wall_time(self._jobs(structure, sources)) > patience:
+            if estimate_wall_time([unit.job for unit in missing]) > patience:
                 return False
             if not WAITS:
-                compilation = self._background_compilation(structure, sources, rare)
+                compilation = self._background_compilation(missing, [])
                 if compilation is not None and not compilation.is_due(at_once=True):
                     return False
-            return self._compiled(structure, sources) is not None
+            return _all_compiled(missing)
 
     def _background_compilation(
-        self, structure: tuple[Any, ...], sources: list[BoundSource], rare: list[BoundSource]
+        self, needed: list[CompilationUnit], later: list[CompilationUnit]
     ) -> "BackgroundCompilation | None":
         """Return the compilation during which plain Python runs; None where that does not pay.
 
-        It does not pay if there can be no machine code, if there is some, or if all functions that
-        the entry calls are compiled and the entry itself compiles in a moment.
+        It does not pay if there can be no machine code, or if there is all that is needed.
         """
-        from rockframe.compiled.parallel import (
-            START_AFTER,
-            BackgroundCompilation,
-            estimate_wall_time,
-        )
+        from rockframe.compiled.parallel import BackgroundCompilation
 
-        jobs = self._jobs(structure, sources)
-        is_a_moment = sources and len(jobs) == 1 and estimate_wall_time(jobs) < START_AFTER
-        if is_a_moment or self._has_failed(structure, sources):
+        if not needed or any(unit.failed for unit in needed):
             return None
-        key = structure, *map(id, sources)
+        key = tuple(map(id, needed))
         compilation = self._compilations.get(key)
         if compilation is None:
             compilation = self._compilations[key] = BackgroundCompilation(
-                jobs, [source.job for source in rare]
+                [unit.job for unit in needed], [unit.job for unit in later]
             )
         return compilation
 
-    def _has_failed(self, structure: tuple[Any, ...], sources: list[BoundSource]) -> bool:
-        failed = structure in self._routines and self._routines[structure] is None
-        return failed or any(source.failed for source in sources)
 
-    def _jobs(self, structure: tuple[Any, ...], sources: list[BoundSource]) -> "list[Job]":
-        """Return the jobs of a call: its bound functions without machine code, then the entry."""
-        from rockframe.compiled.jobs import Job
+def _all_compiled(units: Sequence[CompilationUnit]) -> bool:
+    """Compile units, or load their machine code; whether all of them have some then."""
+    from rockframe.compiled.parallel import NotCompiledError, compile_all
 
-        jobs = [source.job for source in _missing(sources)]
-        return [*jobs, Job(self.source, structure, False)]
-
-    def _compiled(
-        self, structure: tuple[Any, ...], sources: list[BoundSource]
-    ) -> Callable[..., Any] | None:
-        from rockframe.compiled.parallel import NotCompiledError, compile_all
-
-        if self._has_failed(structure, sources):
-            return None
-        missing, routine = _missing(sources), self._routines.get(structure)
-        if routine is not None and not missing:
-            return routine
-        jobs = self._jobs(structure, sources)
-        try:
-            *codes, routine = compile_all(jobs)
-        except NotCompiledError as error:
-            _warn_not_compiled(jobs[error.place].function, error.problem)
-            if error.place < len(missing):  # a bound function: other systems can use the entry
-                missing[error.place].failed = True
-            else:
-                self._routines[structure] = None
-            return None
-        for source, code in zip(missing, codes, strict=True):
-            source.code, source.address = code, code.address
-        self._routines[structure] = routine
-        return routine
+    if any(unit.failed for unit in units):
+        return False
+    if not units:
+        return True
+    jobs = [unit.job for unit in units]
+    try:
+        codes = compile_all(jobs)
+    except NotCompiledError as error:
+        _warn_not_compiled(jobs[error.place].function, error.problem)
+        units[error.place].failed = True  # of a bound function: other systems can use the entry
+        return False
+    for unit, code in zip(units, codes, strict=True):
+        unit.take(code)
+    return True
 
 
-_in_background: Final[dict[BoundSource, "BackgroundCompilation"]] = {}
+@contextmanager
+def _standing_in_for(routine: CompilationUnit) -> Generator[None]:
+    """Count the time of this block as that of plain Python in place of a routine."""
+    started = thread_time()
+    try:
+        yield
+    finally:
+        routine.fallback_seconds += thread_time() - started
+
+
+_in_background: Final[dict[CompilationUnit, "BackgroundCompilation"]] = {}
 """Compilations by other processes of functions for which others stand in."""
 
 
-def _compile_when_due(source: BoundSource, patience: float) -> None:
+def _compile_when_due(unit: CompilationUnit, patience: float) -> None:
     """Compile, or load, a function for which others have stood in for some time [s].
 
     Where entries do not wait, another process compiles it, and this one goes on without it.
     """
     from rockframe.compiled.parallel import BackgroundCompilation, NotCompiledError, compile_all
 
-    job = source.job
+    if unit.failed:
+        return
+    job = unit.job
     try:
-        if source.fallback_seconds < patience and not job.is_stored:
+        if unit.fallback_seconds < patience and not job.is_stored:
             return
         if not WAITS:
-            compilation = _in_background.setdefault(source, BackgroundCompilation([job]))
+            compilation = _in_background.setdefault(unit, BackgroundCompilation([job]))
             if not compilation.is_due(at_once=True):
                 return
-        (source.code,) = compile_all([job])
+        (code,) = compile_all([job])
     except NotCompiledError as error:
         _warn_not_compiled(job.function, error.problem)
-        source.failed, source.is_rarely_called = True, False
+        unit.failed = True
+        if isinstance(unit, BoundSource):
+            unit.is_rarely_called = False
     else:
-        source.address = source.code.address
+        unit.take(code)
 
 
 def is_worth_calling(function: BoundFunction) -> bool:
@@ -338,8 +346,8 @@ def is_worth_calling(function: BoundFunction) -> bool:
     return bool(source.address)
 
 
-def _missing(sources: list[BoundSource]) -> list[BoundSource]:
-    return [*{id(source): source for source in sources if not source.address}.values()]
+def _missing(units: Sequence[CompilationUnit]) -> list[CompilationUnit]:
+    return [*{id(unit): unit for unit in units if unit.code is None}.values()]
 
 
 def compiled_within(

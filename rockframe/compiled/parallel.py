@@ -51,14 +51,19 @@ class NotCompiledError(Exception):
 
 
 def compile_all(jobs: Sequence[Job]) -> list[Any]:
-    """Compile jobs or load them from the store; last those that other processes compile now."""
+    """Compile jobs or load them from the store, with a helper process if that pays."""
     _announce(jobs)
-    compiled: dict[int, Any] = {}
     with _with_helper(jobs) as waiting, without_garbage_collection():
-        for now in (True, False):
-            for place, job in enumerate(jobs):
-                if place not in compiled and not (now and _is_compiled_elsewhere(job)):
-                    compiled[place] = _compile_one(place, job, waiting)
+        return _compile_in_turn(jobs, waiting)
+
+
+def _compile_in_turn(jobs: Sequence[Job], waiting: Callable[[], bool]) -> list[Any]:
+    """Compile jobs; last those that other processes compile now."""
+    compiled: dict[int, Any] = {}
+    for now in (True, False):
+        for place, job in enumerate(jobs):
+            if place not in compiled and not (now and _is_compiled_elsewhere(job)):
+                compiled[place] = _compile_one(place, job, waiting)
     return [compiled[place] for place in range(len(jobs))]
 
 
@@ -202,9 +207,8 @@ def compile_all_of(description: bytes) -> None:
     jobs = _jobs_in(description)[::-1]
     if processors() > 2:
         compile_all(jobs)
-        return
-    for job in jobs:
-        job.make()
+    else:
+        _compile_in_turn(jobs, lambda: True)
 
 
 def _jobs_in(description: bytes) -> list[Job]:
@@ -245,13 +249,14 @@ def _compilers_run() -> bool:
 class BackgroundCompilation:
     """The compilation of a call's jobs by another process while calls run in plain Python.
 
-    A context manager, whose blocks are these calls. The other process also compiles functions that
-    the calls need seldom (`rare_jobs`), if that adds little.
+    A context manager, whose blocks are these calls. Then the other process compiles what they do
+    not wait for (`later_jobs`): the entry, and the functions that they rarely call if that adds
+    little.
     """
 
-    def __init__(self, jobs: Sequence[Job], rare_jobs: Sequence[Job] = ()) -> None:
+    def __init__(self, jobs: Sequence[Job], later_jobs: Sequence[Job] = ()) -> None:
         self._jobs = jobs
-        self._rare_jobs = rare_jobs
+        self._later_jobs = later_jobs
         self._seconds = 0.0  # spent in plain Python
         self._started = 0.0
         self._compiler: subprocess.Popen[bytes] | None = None
@@ -288,18 +293,20 @@ class BackgroundCompilation:
         return (at_once and self._only_here) or self._is_worth_compiling()
 
     def _is_worth_compiling(self) -> bool:
-        rest, needed = REMAINING_SECONDS.get(), estimate_wall_time(self._jobs)
-        return rest >= needed if rest else self._seconds >= SAFETY_FACTOR * needed
+        at_worst = SAFETY_FACTOR * estimate_wall_time(self._jobs)
+        return (REMAINING_SECONDS.get() or self._seconds) >= at_worst
 
-    def _adds_little(self, job: Job) -> bool:
-        """Whether nearly all functions that a job compiles are compiled for the others anyway."""
-        return estimate_seconds([*self._jobs, job]) < estimate_seconds(self._jobs) + START_AFTER
+    def _is_worth_adding(self, job: Job) -> bool:
+        """Whether a job is an entry, or nearly all that it compiles is compiled for the others."""
+        added = estimate_seconds([*self._jobs, job]) - estimate_seconds(self._jobs)
+        return not job.is_bound or added < START_AFTER
 
     def _has_started_compiler(self) -> bool:
         """Start a process that compiles, unless enough of them run; whether one was started."""
         if self._only_here or (_compilers_run() and len(_compilers) >= processors() // 2):
             return False
-        self._compiler = start_compiler([*filter(self._adds_little, self._rare_jobs), *self._jobs])
+        later = filter(self._is_worth_adding, self._later_jobs)
+        self._compiler = start_compiler([*later, *self._jobs])
         self._only_here = self._compiler is None
         if self._compiler is not None:
             _compilers.append(self._compiler)

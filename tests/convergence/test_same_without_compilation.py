@@ -1,8 +1,10 @@
 """Compiled and plain runs share their source and give the same numbers to the last bit.
 
-So do steps that call the equations and steps with the equations compiled into them.
+So do steps that call the equations, steps with the equations compiled into them, and machine code
+that plain Python calls.
 """
 
+from contextlib import contextmanager
 from functools import partial
 
 import numpy as np
@@ -10,12 +12,13 @@ import pytest
 from plain_python import plain_python
 
 import rockframe as rf
-from rockframe.compiled import COMPILED, bind
-from rockframe.solve import equations, integrate
+from rockframe.compiled import COMPILED, bind, bound
+from rockframe.compiled.callbacks import call_machine_code
+from rockframe.solve import driver, equations, integrate
 from rockframe.solve import workspace as at
 from rockframe.solve.equations import equations_of
 from rockframe.solve.evaluation import InlinedEquations
-from rockframe.solve.march import march_by_tolerance
+from rockframe.solve.march import march_by_tolerance, march_fixed, march_fixed_by_rates
 
 pytestmark = [
     pytest.mark.skipif(not COMPILED, reason="this run does without compilation"),
@@ -65,18 +68,37 @@ SECOND_LOOKS = {
 """Scenes whose equations are mostly compiled by another scene."""
 
 
+@contextmanager
+def uncompiled_loop(monkeypatch):
+    """Let runs in this block proceed in plain Python that calls machine code."""
+    calls = []
+
+    def call(source, words):
+        calls.append(source.function)
+        return call_machine_code(source, words)
+
+    with monkeypatch.context() as patch:
+        patch.setattr(integrate, "advance", driver.advance._plain)
+        patch.setattr(bound, "call_machine_code", call)
+        yield
+    assert {march_by_tolerance, march_fixed, march_fixed_by_rates} & {*calls}
+
+
 @pytest.mark.parametrize(
     "name",
     [pytest.param(name, marks=[pytest.mark.long] * (name in SECOND_LOOKS)) for name in STACKS],
 )
-def test_stacks_match_with_and_without_compilation(name):
+def test_stacks_match_with_and_without_compilation(name, monkeypatch):
     stack, base, accuracy = STACKS[name]
     system = rf.System(stack, base)
     compiled = system.simulate(SHORT, accuracy=accuracy, outputs=["energy"])
+    with uncompiled_loop(monkeypatch):
+        around = system.simulate(SHORT, accuracy=accuracy, outputs=["energy"])
     with plain_python():
         plain = system.simulate(SHORT, accuracy=accuracy, outputs=["energy"])
     for variable, values in compiled.variables.items():
-        np.testing.assert_array_equal(values, plain.variables[variable], err_msg=variable)
+        for other in (around, plain):
+            np.testing.assert_array_equal(values, other.variables[variable], err_msg=variable)
     assert compiled.sizes["event"] > 1
 
 
@@ -95,6 +117,8 @@ def test_compiled_and_uncompiled_runs_are_identical(name, monkeypatch):
             integrate, "equations_of", partial(equations_of, compiled_in=compiled_in)
         )
         runs[compiled_in] = system.simulate(motion, accuracy=accuracy, outputs=["energy"])
+    with uncompiled_loop(monkeypatch):
+        runs["around"] = system.simulate(motion, accuracy=accuracy, outputs=["energy"])
     with plain_python():
         plain = system.simulate(motion, accuracy=accuracy, outputs=["energy"])
     for compiled in runs.values():

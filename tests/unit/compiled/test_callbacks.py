@@ -1,6 +1,6 @@
-"""Callbacks run as plain Python until compilation pays, with equal results."""
+"""Machine code and plain Python call each other until compilation pays, with equal results."""
 
-from typing import Any, NamedTuple
+from typing import Annotated, Any, NamedTuple
 
 import numpy as np
 import pytest
@@ -18,7 +18,9 @@ from rockframe.compiled import (
     kernel,
     numbers_in,
 )
-from rockframe.compiled.bound import _bound_source
+from rockframe.compiled.entries import Entry
+from rockframe.compiled.parallel import compile_all
+from rockframe.compiled.sources import bound_source
 
 pytestmark = [
     pytest.mark.unit,
@@ -61,7 +63,7 @@ def through(
 @pytest.fixture(autouse=True)
 def folder(tmp_path, monkeypatch):
     monkeypatch.setenv("ROCKFRAME_CACHE_DIR", str(tmp_path / "code"))
-    _bound_source.cache_clear()  # together with their references to another folder
+    bound_source.cache_clear()  # together with their references to another folder
 
 
 def arguments(row, own=0.0):
@@ -84,7 +86,7 @@ EXPECTED = (1 + 5 + 28, [3.0 * (0.5 - 2.5) * 4.0 + 7.0, 5.75, 0.0], [33, 6])
 def test_python_machine_code_and_callbacks_agree():
     inputs = arguments(2)
     source = inputs[0].function.source
-    source.address, source.fallback_seconds = 0, 0.0
+    source.code, source.address, source.fallback_seconds = None, 0, 0.0
     assert result_of(inputs) == EXPECTED
     assert source.address == 0
     assert source.fallback_seconds > 0.0
@@ -98,9 +100,96 @@ def test_python_machine_code_and_callbacks_agree():
     assert result_of(arguments(2)) == EXPECTED
     assert source.address != 0
     # stored machine code is used at once
-    source.address, source.fallback_seconds = 0, 0.0
+    source.code, source.address, source.fallback_seconds = None, 0, 0.0
     assert result_of(arguments(2)) == EXPECTED
     assert source.address != 0
+
+
+class Nested(NamedTuple):
+    first: Annotated[BoundFunction, gathered]
+    handed_numbers: Vector
+
+
+class Outer(NamedTuple):
+    share: float
+    inner: Nested
+    places: Integers
+
+
+@kernel
+def weighted(
+    scale: Scale, outer: Outer, row: int, out: Vector, counts: Integers, table: ReadOnlyMatrix,
+    more: Vector,
+) -> float:  # fmt: skip
+    """Take a tuple in which there are arrays, and a function to call."""
+    code = outer.inner.first.call(
+        row, outer.share, out, counts, table, -0.25, more, 1, outer.inner.handed_numbers
+    )
+    outer.places[0] += code
+    return scale.factor * (code + outer.share)
+
+
+class Weighing(NamedTuple):
+    function: BoundFunction
+    numbers: Vector
+
+
+@background_entry
+def weigh(
+    weighing: Weighing, outer: Outer, row: int, out: Vector, counts: Integers,
+    table: ReadOnlyMatrix, more: Vector, results: Vector,
+) -> None:  # fmt: skip
+    for i in range(len(results)):
+        results[i] = weighing.function.call(outer, row, out, counts, table, more, weighing.numbers)
+
+
+@pytest.mark.parametrize("inner_is_compiled", [True, False])
+def test_python_calls_machine_code(inner_is_compiled, monkeypatch):
+    handed, row, *arrays = arguments(2)
+    scale = Scale(0.5, np.zeros(1))
+    (function,) = bind((weighted,), scale)
+
+    def call(run):
+        places, results = np.array([1]), np.zeros(3)
+        own = arrays[0].copy(), arrays[1].copy(), *arrays[2:]
+        outer = Outer(0.5, Nested(handed.function, handed.numbers), places)
+        run(Weighing(function, numbers_in(scale)), outer, row, *own, results)
+        return places.tolist(), results.tolist(), own[0].tolist(), own[1].tolist()
+
+    in_python = call(weigh._plain)
+    if inner_is_compiled:
+        handed.function.source.fallback_seconds = 1e9
+        through(*arguments(2))
+    call(weigh)
+    assert function.source.address != 0
+    assert (handed.function.source.address != 0) is inner_is_compiled
+    assert call(weigh._plain) == in_python
+    monkeypatch.setattr(function.source, "function", None)  # is not called
+    assert call(weigh._plain) == in_python
+
+
+def test_loop_runs_as_python_until_it_pays_to_compile_it(monkeypatch):
+    monkeypatch.setattr("rockframe.compiled.parallel.START_AFTER", 0.0)  # no entry is a moment
+    loop = Entry(weigh.source, waits=False, calls_back=True)
+    handed, row, *arrays = arguments(2)
+    scale = Scale(0.5, np.zeros(1))
+    (function,) = bind((weighted,), scale)
+
+    def call():
+        results, own = np.zeros(3), (arrays[0].copy(), arrays[1].copy(), *arrays[2:])
+        outer = Outer(0.5, Nested(handed.function, handed.numbers), np.array([1]))
+        loop(Weighing(function, numbers_in(scale)), outer, row, *own, results)
+        return results.tolist()
+
+    in_python = call()
+    (routine,) = loop._routines.values()
+    function.source.take(compile_all([function.source.job])[0])
+    assert call() == in_python
+    assert routine.code is None
+    assert routine.fallback_seconds > 0.0
+    compile_all([routine.job])  # as another process
+    assert call() == in_python
+    assert routine.code is not None
 
 
 @kernel
@@ -176,7 +265,7 @@ def test_function_is_compiled_once_fallback_exceeds_compilation_time(monkeypatch
     assert is_worth_calling(own)
     assert source.address != 0
     # another process, without these timings, finds it stored
-    _bound_source.cache_clear()
+    bound_source.cache_clear()
     (rebound,) = bind((plain,), scale)
     assert rebound.source is not source
     assert is_worth_calling(rebound)

@@ -4,6 +4,7 @@ from typing import NamedTuple
 
 import numpy as np
 import pytest
+from plain_python import plain_python
 
 from rockframe.compiled import (
     COMPILED,
@@ -79,7 +80,8 @@ def test_each_lane_has_its_own_system(mode, tmp_path, monkeypatch):
     room = filled_room()
     pulls = bind_in_lanes(pull_all, systems()[0])
     if mode == "plain":
-        assert pulls.call(LANES, room.reshape(-1), np.zeros(0)) == LANES
+        with plain_python():
+            assert pulls.call(LANES, room.reshape(-1), np.zeros(0)) == LANES
     else:
         if not COMPILED:
             pytest.skip("compilation is off in this run")
