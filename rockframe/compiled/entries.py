@@ -180,7 +180,9 @@ class Entry:
             return routine.code(*words)
         needed, later = self._needed(routine, sources)
         with _lock:
-            compilation = None if self._waits else self._background_compilation(needed, later)
+            compilation = None
+            if not self._waits:
+                compilation = self._background_compilation(sources, needed, later)
             ready = compilation is None or compilation.is_due()
             if ready and _all_compiled(needed):
                 from rockframe.compiled.parallel import START_AFTER
@@ -237,21 +239,28 @@ class Entry:
             if estimate_wall_time([unit.job for unit in missing]) > patience:
                 return False
             if not WAITS:
-                compilation = self._background_compilation(missing, [])
+                compilation = self._background_compilation(sources, missing, [])
                 if compilation is not None and not compilation.is_due(at_once=True):
                     return False
             return _all_compiled(missing)
 
     def _background_compilation(
-        self, needed: list[CompilationUnit], later: list[CompilationUnit]
+        self,
+        sources: list[BoundSource],
+        needed: list[CompilationUnit],
+        later: list[CompilationUnit],
     ) -> "BackgroundCompilation | None":
         """Return the compilation during which plain Python runs; None where that does not pay.
 
-        It does not pay if there can be no machine code, or if there is all that is needed.
+        It does not pay if there can be no machine code, if there is all that is needed, or if all
+        functions that the entry calls are compiled and the entry itself compiles in a moment.
         """
-        from rockframe.compiled.parallel import BackgroundCompilation
+        from rockframe.compiled.parallel import START_AFTER, BackgroundCompilation
 
         if not needed or any(unit.failed for unit in needed):
+            return None
+        entries = [unit for unit in needed if not isinstance(unit, BoundSource)]
+        if sources and entries == needed and entries[0].job.seconds < START_AFTER:
             return None
         key = tuple(map(id, needed))
         compilation = self._compilations.get(key)

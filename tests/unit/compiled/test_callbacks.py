@@ -18,6 +18,7 @@ from rockframe.compiled import (
     kernel,
     numbers_in,
 )
+from rockframe.compiled.callbacks import _raised, run_and_raise
 from rockframe.compiled.entries import Entry
 from rockframe.compiled.parallel import compile_all
 from rockframe.compiled.sources import bound_source
@@ -204,6 +205,47 @@ def test_exceptions_of_callbacks_propagate():
         call(Handed(function, np.zeros(2)), np.zeros(1))
     # and is raised only once
     assert result_of(arguments(2)) == EXPECTED
+
+
+def test_entry_that_compiles_in_a_moment_is_compiled_at_once():
+    loop = Entry(call.source, waits=False, calls_back=True)
+    scale = Scale(2.0, np.zeros(1))
+    (function,) = bind((plain,), scale)
+    function.source.take(compile_all([function.source.job])[0])
+    assert loop(Handed(function, numbers_in(scale)), np.zeros(1)) == 5
+    (routine,) = loop._routines.values()
+    assert routine.code is not None
+
+
+def uncompilable_loop(handed: Handed, out: Vector) -> int:
+    return eval("1") * handed.function.call(out, handed.numbers)  # noqa: S307
+
+
+def test_uncompilable_loop_runs_as_python_around_machine_code(monkeypatch, fallbacks):
+    monkeypatch.setattr("rockframe.compiled.parallel.START_AFTER", 0.0)
+    loop = Entry(uncompilable_loop, waits=False, calls_back=True)
+    scale = Scale(2.0, np.zeros(1))
+    (function,) = bind((plain,), scale)
+    function.source.take(compile_all([function.source.job])[0])
+    for _ in range(3):
+        assert loop(Handed(function, numbers_in(scale)), np.zeros(1)) == 5
+        (routine,) = loop._routines.values()
+        routine.fallback_seconds = 1e9
+        monkeypatch.setattr("rockframe.compiled.entries.WAITS", True)  # compile in this process
+    assert routine.failed
+    assert len(fallbacks) == 1
+    fallbacks.clear()
+
+
+def test_call_inside_a_callback_keeps_exceptions_of_the_call_around_it():
+    def raising_then_calling():
+        _raised.first = ValueError("of the call around")
+        assert run_and_raise(lambda: 3, []) == 3
+        return 0
+
+    with pytest.raises(ValueError, match="of the call around"):
+        run_and_raise(raising_then_calling, [])
+    assert run_and_raise(lambda: 3, []) == 3
 
 
 @kernel
