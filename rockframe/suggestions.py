@@ -9,7 +9,17 @@ from collections.abc import Callable, Iterable, Mapping
 from functools import wraps
 from inspect import Parameter, signature
 from types import FunctionType
-from typing import TYPE_CHECKING, Any, Final, NoReturn, TypeVar, cast
+from typing import (
+    TYPE_CHECKING,
+    Any,
+    Concatenate,
+    Final,
+    Generic,
+    NoReturn,
+    ParamSpec,
+    TypeVar,
+    cast,
+)
 
 from rockframe.errors import (
     AccessError,
@@ -21,6 +31,8 @@ from rockframe.errors import (
 
 Function = TypeVar("Function", bound=Callable[..., Any])
 Class = TypeVar("Class", bound=type)
+Made = TypeVar("Made")
+Arguments = ParamSpec("Arguments")
 _MODULES_BY_FIRST_PARAMETER: Final = {
     "self": "", "cls": "", "kind": "rockframe.motion.", "motion": "rockframe.motion.",
     "suite": "rockframe.suites.",
@@ -112,6 +124,22 @@ def _raise_no_attribute(self: object, name: str) -> NoReturn:
     # programs, and dir() itself, look up names that begin with an underscore
     known = () if name.startswith("_") else dir(self)
     raise unknown_attribute(type(self).__name__, name, known)
+
+
+if TYPE_CHECKING:
+
+    class Constructor(Generic[Arguments]):
+        """A function as a class method that makes objects; for mypy `classmethod` makes Any."""
+
+        def __init__(self, function: Callable[Concatenate[type[Any], Arguments], Any], /) -> None:
+            """Take the function; its first argument is the class."""
+
+        def __get__(self, instance: object, kind: type[Made], /) -> Callable[Arguments, Made]:
+            """Return the function of the other arguments, which makes an object of the class."""
+            ...
+
+else:
+    Constructor = classmethod
 
 
 class SuggestingMeta(ABCMeta):

@@ -58,7 +58,11 @@ def _slips(run: xr.Dataset) -> AnyArray:
 
 
 def history_error(run: xr.Dataset, reference: xr.Dataset) -> float:
-    """Return the largest difference of both histories of rotation over the peak rotation [1]."""
+    """Return the largest difference of both histories of rotation over the reference's peak [1].
+
+    They are compared until one of both ends, over the peak of the whole reference: the errors of
+    several runs against it are shares of one rotation.
+    """
     if _without_verdict(run, reference):
         return float("nan")
     rotation, expected = (data["rotation"].to_numpy() for data in (run, reference))
@@ -66,7 +70,7 @@ def history_error(run: xr.Dataset, reference: xr.Dataset) -> float:
     count = min(rotation.size, expected.size)
     while count > 0 and times[0][count - 1] != times[1][count - 1]:
         count -= 1  # a run that overturned ends between two samples of the other
-    peak = float(np.max(np.abs(expected[:count]), initial=0.0))
+    peak = float(np.max(np.abs(expected), initial=0.0))
     return _relative(float(np.max(np.abs(rotation[:count] - expected[:count]), initial=0.0)), peak)
 
 
@@ -157,7 +161,9 @@ def tradeoff(
     -----
     Each model is run before it is timed, until its machine code is compiled. Times are wall
     times on this machine and can only be compared with one another. Histories are compared at
-    the output times.
+    the output times, until one of both runs ends because its body overturns. Their largest
+    difference is divided by the peak of the whole history of the reference; it is more than 1
+    where both rotate to opposite sides, or one of them much further.
 
     Examples
     --------

@@ -18,6 +18,7 @@ from rockframe.components.parameters import DERIVED, Declared, Derived, Paramete
 from rockframe.components.shapes import outline, parts
 from rockframe.errors import ComponentError, ModelWarning, short_repr, warn
 from rockframe.notebook import Polygon, rectangle
+from rockframe.suggestions import Constructor
 from rockframe.units import (
     ANGLE,
     ANGULAR_VELOCITY,
@@ -469,9 +470,9 @@ class Block(Component[BlockSI]):
     # constructors from shapes are functions with their own documentation; their first argument
     # is the class
 
-    from_outline = classmethod(outline.from_outline)
-    cylinder = classmethod(outline.cylinder)
-    from_parts = classmethod(parts.from_parts)
+    from_outline = Constructor(outline.from_outline)
+    cylinder = Constructor(outline.cylinder)
+    from_parts = Constructor(parts.from_parts)
 
     @property
     def radius(self) -> Quantity:

@@ -9,9 +9,8 @@ that *is held* presses the base, or is about to; if neither end is held, the bod
 base's own variables obey first-order equations, and follow the coordinates in the state.
 """
 
-import math
 from collections.abc import Callable
-from typing import Any, Final, NamedTuple, TypeAlias
+from typing import Any, Final, NamedTuple, TypeAlias, cast
 
 from rockframe.compiled import Vector, inlined, kernel
 from rockframe.dynamics.body import BaseLine
@@ -22,6 +21,10 @@ Variables: TypeAlias = tuple[float, ...]
 """A base's own variables, as many as it needs; an empty tuple if it has none."""
 SIMULTANEOUS: Final = 1e-9
 """Share of the settlement within which ends land, or leave, together."""
+_DEEPEST: Final = 1e18
+"""Compression, over its estimate, that is tried before a base is refused [1]."""
+_LARGEST_EXCESS: Final = 1e-6
+"""Error of the force of a base in equilibrium over the weight on it [1]."""
 
 
 class BaseForce(NamedTuple):
@@ -198,16 +201,26 @@ class Base:
         return 1.0
 
 
-def positive_root(function: Callable[[float], float], start: float) -> float:
-    """Return the root of an increasing function that is negative at zero, searched from `start`."""
+def positive_root(function: Callable[[float], float], start: float, owner: str) -> float:
+    """Return the depth at which an excess of force over the weight is zero, searched from `start`.
+
+    The excess is an increasing function that is negative at zero; `owner` is its law.
+    """
     from scipy.optimize import root_scalar
 
+    missing, deepest = -function(0.0), start * _DEEPEST
+    if missing <= 0.0:
+        msg = f"{owner}: the base carries the weight on it without compression"
+        raise AssemblyError([msg])
+    none = AssemblyError([f"{owner}: no compression of the base carries the weight on it"])
     while not function(start) > 0.0:
         start *= 2.0
-        if math.isinf(start):
-            raise AssemblyError(["no compression of the base carries the weight on it"])
-    solution = root_scalar(function, bracket=(0.0, start), xtol=1e-18, rtol=1e-14)
-    return float(solution.root)
+        if not start < deepest:
+            raise none
+    depth = float(root_scalar(function, bracket=(0.0, start), xtol=1e-18, rtol=1e-14).root)
+    if abs(function(depth)) > _LARGEST_EXCESS * missing:  # the force jumps there
+        raise none
+    return depth
 
 
 def equilibrium_height(
@@ -238,5 +251,5 @@ def equilibrium_height(
         line = BaseLine(height + ends[0], height + ends[1], 0.0, 0.0, 0.0, 0.0)
         return float(base.force(base.starting(line, own), line, own).upward) - weight
 
-    highest = depth - min(ends)
-    return highest - positive_root(lambda down: excess(highest - down), depth)
+    highest, owner = depth - min(ends), type(cast("Any", base).law).__name__
+    return highest - positive_root(lambda down: excess(highest - down), depth, owner)

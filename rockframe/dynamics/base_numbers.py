@@ -12,7 +12,7 @@ from rockframe.compiled import Vector
 from rockframe.dynamics.base import Base, positive_root
 from rockframe.dynamics.bed import Bed, Rigid
 from rockframe.dynamics.body import BaseLine, Body
-from rockframe.dynamics.law_trial import check_point_law
+from rockframe.dynamics.law_trial import check_point_law, check_unloaded_level
 from rockframe.dynamics.pads import LEAVE, REENGAGE, ROUNDING, ElasticPads, Pads
 from rockframe.dynamics.point_law import Point, Viscoelastic
 from rockframe.dynamics.protocol import CORNER_REACTIONS, Column
@@ -119,6 +119,7 @@ def pads_over(
         Typical sizes of the law's variables at one pad.
     """
     check_point_law(law, elastic.settlement, columns, variable_scales)
+    check_unloaded_level(law, elastic.settlement)
     pads: Any = elastic.law
     guards = np.full(int(law.states() > 1), pads.noise)
     return replace(
@@ -172,7 +173,10 @@ def springs_under(
         return float(law.force(0, point(pressed, speed), np.zeros(of_law)))
 
     pressure = weight / math.fsum(lengths)
-    settlement = positive_root(lambda depth: force(depth) - pressure, pressure / force(1.0))
+    at_a_metre, name = force(1.0), type(law).__name__
+    start = pressure / at_a_metre if at_a_metre > 0.0 else 1.0
+    settlement = positive_root(lambda depth: force(depth) - pressure, start, name)
+    check_unloaded_level(law, settlement)
     stiffness = law.force_rate(0, point(settlement, 1.0), np.zeros(of_law))
     damping = force(settlement, 1.0) - force(settlement)
     levers = body.left - width * np.asarray(places)

@@ -78,6 +78,17 @@ def check_point_law(
         raise AssemblyError(faults)
 
 
+def check_unloaded_level(law: Any, settlement: float) -> None:
+    """Refuse a user's own law of a point whose unloaded level is below its settlement."""
+    sunk = law.sunk(np.zeros(law.variables()))
+    if not sunk < settlement:
+        msg = (
+            f"{type(law).__name__}.sunk must be less than the settlement at rest, {settlement:.6g} "
+            f"m, before the start of a run, got {sunk:.6g}"
+        )
+        raise AssemblyError([msg])
+
+
 def _faults_at_point(
     law: Any, name: str, point: Point, columns: int, scales: tuple[float, ...]
 ) -> _Faults:

@@ -21,7 +21,7 @@ from rockframe.motion.operations import (
 )
 from rockframe.motion.value import MotionValue
 from rockframe.signals import Motion
-from rockframe.suggestions import suggests_names
+from rockframe.suggestions import Constructor, suggests_names
 
 
 @suggests_names
@@ -79,19 +79,19 @@ class GroundMotion(AnalyticMotion):
     # Other constructors and operations are functions with their own documentation; their first
     # argument is the class, or the motion.
 
-    read = classmethod(records.read)
-    example = classmethod(records.example)
-    from_arrays = classmethod(records.from_arrays)
-    from_times = classmethod(tables.from_times)
-    from_frame = classmethod(tables.from_frame)
-    from_trace = classmethod(tables.from_trace)
-    stochastic = classmethod(synthetic.stochastic)
+    read = Constructor(records.read)
+    example = Constructor(records.example)
+    from_arrays = Constructor(records.from_arrays)
+    from_times = Constructor(tables.from_times)
+    from_frame = Constructor(tables.from_frame)
+    from_trace = Constructor(tables.from_trace)
+    stochastic = Constructor(synthetic.stochastic)
 
     to_dataset = description.to_dataset
-    from_dataset = classmethod(description.from_dataset)
+    from_dataset = Constructor(description.from_dataset)
     to_at2 = writing.to_at2
     to_dict = description.to_dict
-    from_dict = classmethod(description.from_dict)
+    from_dict = Constructor(description.from_dict)
 
     window = timing.window
     resampled = timing.resampled

@@ -1,9 +1,9 @@
 """The list of formats, and functions to add formats."""
 
-import inspect
 import re
 from typing import Any, Final, cast
 
+from rockframe.arguments import call_signature
 from rockframe.errors import ComponentError, RecordError, did_you_mean, short_repr
 from rockframe.records.asdf import ASDF
 from rockframe.records.cosmos import COSMOS
@@ -206,9 +206,9 @@ def _faults(reader: object) -> list[str]:
             faults.append(f"{expected}, got {call!r}")
             continue
         try:
-            inspect.signature(call).bind(*arguments)
+            call_signature(call).bind(*arguments)
         except TypeError:
-            faults.append(f"{expected}, got the arguments {inspect.signature(call)}")
+            faults.append(f"{expected}, got the arguments {call_signature(call)}")
         except ValueError:  # a built-in without a signature; the call will show
             continue
     if not isinstance(getattr(reader, "BINARY", False), bool):

@@ -38,7 +38,7 @@ class OwnBase(OwnAnswers, Component):
 
     A subclass declares its parameters like all components, the slot that it fills (``"pads"`` or
     ``"soil"``), and a method that returns its support under a body. After registration by
-    :func:`rockframe.register` it can replace pads, or soil, in any scene.
+    :func:`rockframe.register` it can replace pads, or soil, under a single body without links.
 
     Examples
     --------

@@ -719,10 +719,33 @@ def test_law_is_tried_when_its_scene_is_built(yielding, monkeypatch, methods, wo
         built_with(yielding, monkeypatch, **methods)
 
 
-@pytest.mark.parametrize("force", [0.0, -1.0])
-def test_base_without_force_is_refused(yielding, monkeypatch, force):
-    with pytest.raises(AssemblyError, match="no compression of the base carries the weight"):
-        built_with(yielding, monkeypatch, spring=lambda *_: force).describe()
+@pytest.mark.parametrize(
+    "spring",
+    [
+        lambda *_: 0.0,
+        lambda *_: -1.0,
+        # half the weight at most, which overflows where its denominator does not
+        lambda self, point, own: 1e9 * point.pressed / (1.0 + 1e9 / 2.4 * point.pressed),
+        lambda self, point, own: 1e3 * (point.pressed + 1.0),  # more than the weight at once
+    ],
+)
+def test_base_without_force_is_refused(yielding, monkeypatch, spring):
+    words = "YieldingPad: no compression of the base carries the weight"
+    with pytest.raises(AssemblyError, match=words):
+        built_with(yielding, monkeypatch, spring=spring).describe()
+
+
+def test_base_that_needs_no_compression_is_refused(yielding, monkeypatch):
+    raised = {"sunk": lambda *_: -1.0, "spring": lambda self, point, own: point.pressed + 1e3}
+    with pytest.raises(AssemblyError, match=r"YieldingPad: .* carries the weight .* without"):
+        built_with(yielding, monkeypatch, **raised).describe()
+
+
+@pytest.mark.parametrize("sunk", [0.03, 1.0])
+def test_unloaded_level_below_the_settlement_is_refused(yielding, monkeypatch, sunk):
+    words = r"YieldingPad\.sunk must be less than the settlement at rest, 0.012\d* m.* got"
+    with pytest.raises(AssemblyError, match=words):
+        built_with(yielding, monkeypatch, sunk=lambda *_: sunk)
 
 
 def test_support_must_return_a_support():

@@ -107,6 +107,8 @@ MOTION_SHARE: Final = 0.2
 2007)."""
 
 _REFINEMENT: Final = 10
+_SEARCH_STEPS: Final = 200
+"""Samples in the shortest period that are enough for the search; finer ones are left out."""
 
 
 class WaveletPeak(NamedTuple):
@@ -139,13 +141,15 @@ def strongest_wavelet(velocities: Array, dt: float, periods: Array) -> WaveletPe
     """Find where :eq:`eq-wavelet-coefficient` is greatest, by :eq:`eq-pulse-direction`."""
     from scipy import fft
 
-    count = velocities.shape[1]
-    reach = sampled_wavelet(float(periods[-1]), dt).size
+    every = max(1, int(periods[0] / (_SEARCH_STEPS * dt)))
+    searched, step = velocities[:, ::every], every * dt
+    count = searched.shape[1]
+    reach = sampled_wavelet(float(periods[-1]), step).size
     size = fft.next_fast_len(count + reach, real=True)
-    transforms = np.fft.rfft(velocities, size)
+    transforms = np.fft.rfft(searched, size)
     greatest, period, sample = -1.0, 0.0, 0
     for trial_period in periods.tolist():
-        wavelet = sampled_wavelet(trial_period, dt)
+        wavelet = sampled_wavelet(trial_period, step)
         transform = np.conj(np.fft.rfft(wavelet, size))
         products = np.fft.irfft(transforms * transform, size)
         # the velocity is zero before and after; a wavelet may extend beyond both ends
@@ -153,7 +157,12 @@ def strongest_wavelet(velocities: Array, dt: float, periods: Array) -> WaveletPe
         squares: Array = np.sum(coefficients**2, axis=0)
         top = int(np.argmax(squares))
         if squares[top] > greatest:
-            greatest, period, sample = float(squares[top]), trial_period, top
+            greatest, period, sample = float(squares[top]), trial_period, top * every
+    if every > 1:
+        last, wavelet = velocities.shape[1] - 1, sampled_wavelet(period, dt)
+        around = range(max(0, sample - every), min(last, sample + every) + 1)
+        found = [_coefficients_near(velocity, around, wavelet) for velocity in velocities]
+        sample = around[int(np.argmax(np.sum(np.square(found), axis=0)))]
     near = np.geomspace(period / PERIOD_RATIO, period * PERIOD_RATIO, 2 * _REFINEMENT + 1)
     near = near[(near >= periods[0]) & (near <= periods[-1])]
     refined = np.array(

@@ -12,7 +12,7 @@ from concurrent.futures import (
     ThreadPoolExecutor,
     wait,
 )
-from contextlib import closing, contextmanager, nullcontext
+from contextlib import closing, contextmanager
 from functools import partial
 from threading import Event, Thread
 from typing import Any, Final, Protocol, runtime_checkable
@@ -164,38 +164,43 @@ def run_chunks(
     stop = Event()
     waiting = iter(chunks)
     running: dict[Future[CaseResults | None], Chunk] = {}
-    with _thread_pool() if executor is None else nullcontext(executor) as pool:
-        run = partial(run_chunk, stopped=stop.is_set) if executor is None else run_chunk
-        try:
-            more_chunks = True
-            while more_chunks or running:
-                most = _CHUNKS_PER_WORKER * workers_of_executor(executor) if more_chunks else 0
-                while more_chunks and len(running) < most:
-                    chunk = next(waiting, _END)
-                    if chunk is None:
-                        break
-                    if chunk is _END:
-                        more_chunks = False
-                    else:
-                        running[_submit(pool, run, job_of(chunk))] = chunk
-                if running:
-                    done, _ = wait(running, timeout=_POLL_INTERVAL, return_when=FIRST_COMPLETED)
-                    _collect_results(done, running, collect)
-                elif more_chunks:
-                    time.sleep(_POLL_INTERVAL)
-                on_poll()
-            return True
-        except BaseException as problem:
-            stop.set()
-            for future in running:
-                future.cancel()
-            if not isinstance(problem, KeyboardInterrupt):
-                raise
-            done = {future for future in running if future.done() and not future.cancelled()}
-            _collect_results(
-                {future for future in done if future.exception() is None}, running, collect
-            )
-            return False
+    pool = _thread_pool() if executor is None else executor
+    interrupted = False
+    run = partial(run_chunk, stopped=stop.is_set) if executor is None else run_chunk
+    try:
+        more_chunks = True
+        while more_chunks or running:
+            most = _CHUNKS_PER_WORKER * workers_of_executor(executor) if more_chunks else 0
+            while more_chunks and len(running) < most:
+                chunk = next(waiting, _END)
+                if chunk is None:
+                    break
+                if chunk is _END:
+                    more_chunks = False
+                else:
+                    running[_submit(pool, run, job_of(chunk))] = chunk
+            if running:
+                done, _ = wait(running, timeout=_POLL_INTERVAL, return_when=FIRST_COMPLETED)
+                _collect_results(done, running, collect)
+            elif more_chunks:
+                time.sleep(_POLL_INTERVAL)
+            on_poll()
+        return True
+    except BaseException as problem:
+        stop.set()
+        for future in running:
+            future.cancel()
+        interrupted = isinstance(problem, KeyboardInterrupt)
+        if not interrupted:
+            raise
+        done = {future for future in running if future.done() and not future.cancelled()}
+        _collect_results(
+            {future for future in done if future.exception() is None}, running, collect
+        )
+        return False
+    finally:
+        if executor is None:  # threads notice the interrupt later, as when they have compiled
+            pool.shutdown(wait=not interrupted)
 
 
 def _submit(
@@ -250,12 +255,9 @@ class _InlineExecutor(Executor):
         return done
 
 
-@contextmanager
-def _thread_pool() -> Generator[Executor]:
+def _thread_pool() -> Executor:
     try:
         Thread(target=int).start()
     except RuntimeError:  # as in a browser
-        yield _InlineExecutor()
-        return
-    with ThreadPoolExecutor(processors(), thread_name_prefix="rockframe") as pool:
-        yield pool
+        return _InlineExecutor()
+    return ThreadPoolExecutor(processors(), thread_name_prefix="rockframe")

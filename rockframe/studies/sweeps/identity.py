@@ -3,6 +3,7 @@
 import hashlib
 import inspect
 import json
+import sys
 from collections.abc import Callable, Mapping
 from dataclasses import fields, is_dataclass
 from functools import cache
@@ -125,11 +126,13 @@ def _source_of_class(kind: type) -> dict[str, str]:
     """Describe the source of a class from outside rockframe, with everything defined beside it.
 
     The equations of a user's base are the classes, functions and constants beside its component.
+    Python's own classes, such as `typing.Generic`, are left out.
     """
     texts: list[Any] = []
+    left_out = {_PACKAGE, *sys.stdlib_module_names}
     for base in kind.__mro__:
         module = inspect.getmodule(base)
-        if module is None or module.__name__.partition(".")[0] in (_PACKAGE, "builtins"):
+        if module is None or module.__name__.partition(".")[0] in left_out:
             continue
         texts.append(_describe_function(base))
         for name, value in sorted(vars(module).items()):

@@ -47,7 +47,17 @@ def test_history_error_is_relative_to_the_reference_peak():
 def test_final_sample_of_an_ended_run_is_not_compared():
     ended = run_of([0.0, 1.0, -3.0, 9.0], [0.0, 0.1, 0.2, 0.27])
     assert history_error(ended, REFERENCE) == 0.25
-    assert history_error(REFERENCE, ended) == pytest.approx(1.0 / 3.0)
+    # but it is the peak of the reference, by which errors of all runs are divided
+    assert history_error(REFERENCE, ended) == pytest.approx(1.0 / 9.0)
+
+
+def test_run_that_overturns_early_is_compared_with_the_peak_of_the_whole_reference():
+    fell = run_of([0.0, 3.0, 9.0], [0.0, 0.1, 0.17], status=Status.OVERTURNED)
+    assert history_error(fell, REFERENCE) == 0.5
+
+
+def test_opposite_rotations_have_a_history_error_above_one():
+    assert history_error(run_of([0.0, -1.0, 2.0, -2.0], TIME), REFERENCE) == 1.5
 
 
 def test_errors_against_a_reference_at_rest_are_zero_or_infinite():

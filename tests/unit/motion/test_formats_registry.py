@@ -1,6 +1,7 @@
 """The registry of formats, and readers registered by users."""
 
 import doctest
+from functools import wraps
 from types import SimpleNamespace
 
 import numpy as np
@@ -156,6 +157,28 @@ def test_register_refuses_invalid_readers(changed, words):
     with pytest.raises(ComponentError, match=words):
         register(reader(**changed))
     assert formats() == before
+
+
+def test_decorated_functions_are_read_by_their_own_arguments(registered):
+    def as_text(function):
+        @wraps(function)
+        def call(source, request):
+            return function("\n".join(source.lines), source=source, request=request)
+
+        return call
+
+    @as_text
+    def read_text(text, *, source, request):
+        assert text.startswith("MADE UP FORMAT")
+        return read(source, request)
+
+    @wraps(read)
+    def of_text(text):
+        return read_text(text)
+
+    registered(read=read_text)
+    with pytest.raises(ComponentError, match=r"read must be a function of source and request"):
+        register(reader(NAME="other", read=of_text))
 
 
 def test_all_faults_are_listed():

@@ -10,6 +10,7 @@ from records import record_path
 import rockframe as rf
 from rockframe.errors import ComponentError, UnitsError
 from rockframe.motion import GroundMotion
+from rockframe.motion.processing import velocity_pulses
 from rockframe.motion.processing.velocity_pulses import (
     mother_wavelet,
     pulse_measures,
@@ -105,6 +106,25 @@ def test_pulse_has_largest_wavelet_coefficient():
     )
     result = motion.velocity_pulse(shortest_period="0.4 s", longest_period="4 s")
     assert result.period.m_as("s") == pytest.approx(best[1], rel=0.03)
+
+
+def test_search_leaves_out_samples_finer_than_it_needs(monkeypatch):
+    """With all samples it took seconds, and found the same wavelet."""
+    time = np.arange(0.0, 10.0, 4e-4)
+    one, other = (np.sin(2.0 * np.pi * time / p + p) for p in (1.3, 2.1))
+    velocities = np.exp(-((time - 6.0) ** 2)) * np.array([one + 0.3 * other, 0.7 * other])
+    periods = velocity_pulses.period_range(0.5, 5.0)
+    steps = []
+
+    def sampled(period, dt, original=velocity_pulses.sampled_wavelet):
+        steps.append(dt)
+        return original(period, dt)
+
+    monkeypatch.setattr(velocity_pulses, "sampled_wavelet", sampled)
+    found = velocity_pulses.strongest_wavelet(velocities, 4e-4, periods)
+    assert sum(math.isclose(dt, 2.4e-3) for dt in steps) > periods.size
+    monkeypatch.setattr(velocity_pulses, "_SEARCH_STEPS", math.inf)
+    assert found == velocity_pulses.strongest_wavelet(velocities, 4e-4, periods)
 
 
 def test_pulse_and_residual_sum_to_motion_without_drift():

@@ -283,6 +283,12 @@ def test_digest_depends_on_closure_of_a_function():
 ARGUMENTS = {"frequency_ratio": 15, "damping_ratio": 0.05, "strength": 0.6, "hardening": 0.1}
 
 
+def test_description_of_a_part_has_no_source_of_python_itself():
+    """It took seconds to read, and another Python would have refused the store."""
+    for part in (rf.Block(width="1 m", height="4 m", mass="1 t"), rf.RigidGround()):
+        assert set(description_of(part)) == {*part.to_dict(), "given"}
+
+
 def test_digest_depends_on_code_of_a_user_defined_base(tmp_path):
     def digest(module):
         _source_of_class.cache_clear()

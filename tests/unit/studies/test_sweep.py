@@ -1,5 +1,6 @@
 """Running a sweep: failing cases, histories, executors, interrupts, and single cases."""
 
+import _thread
 import itertools
 import json
 import logging
@@ -33,7 +34,7 @@ from rockframe.results.variables.runs import RunStatus
 from rockframe.simulation import run as of_a_run
 from rockframe.simulation.soundness import STILL_MOVING
 from rockframe.solve.workspace import Status
-from rockframe.studies.sweeps import labelling
+from rockframe.studies.sweeps import execution, labelling
 from rockframe.studies.sweeps import study as studies_at_hand
 from rockframe.studies.sweeps.axes import SYSTEM_AXES, Changes
 
@@ -279,6 +280,30 @@ def test_sigint_interrupts_own_threads(request):
     done = runs.status == 0
     assert 0 < int(done.sum()) < 2000
     assert runs.peak_rotation.where(done, drop=True).notnull().all()
+
+
+def test_interrupt_does_not_wait_for_a_compilation(monkeypatch, request):
+    """A thread that compiles looks at nothing else before it has its code."""
+    compiles, compiled = threading.Event(), threading.Event()
+
+    def compiling_chunk(job, stopped):
+        compiles.set()
+        assert compiled.wait(60.0)
+
+    def interrupt():
+        assert compiles.wait(60.0)
+        time.sleep(0.3)  # the thread has started, and its caller waits for results
+        _thread.interrupt_main()
+
+    monkeypatch.setattr(execution, "run_chunk", compiling_chunk)
+    before = signal.signal(signal.SIGINT, signal.default_int_handler)
+    request.addfinalizer(lambda: signal.signal(signal.SIGINT, before))
+    request.addfinalizer(compiled.set)
+    threading.Thread(target=interrupt).start()
+    began = time.perf_counter()
+    with pytest.warns(SolverWarning, match="not been run"):
+        rf.sweep(SYSTEM, PULSE, scale=[1.0, 2.0], **FAST)
+    assert time.perf_counter() - began < 30.0
 
 
 class Broken(Executor):
