@@ -19,7 +19,7 @@ from rockframe.command.typed_calls import (
     target_from,
     values_by_name,
 )
-from rockframe.errors import ComponentError, FileError, SchemaError
+from rockframe.errors import ComponentError, FileError, SchemaError, StudyError
 from rockframe.motion import GroundMotion
 from rockframe.reports import report
 from rockframe.reports.checks import CodeCheck
@@ -27,6 +27,7 @@ from rockframe.reports.motions import available_motions
 from rockframe.reports.project import CHECKS, PROJECT_ATTRIBUTE
 from rockframe.simulation.system import System
 from rockframe.studies import case, open_study
+from rockframe.studies.sweeps.case import NOT_GIVEN
 from rockframe.suites import TargetSpectrum, read_suite
 
 _CHECK_OPTION: Final = "--check"
@@ -132,7 +133,11 @@ def _simulate_case(
     if strange:
         words = f"--case: there is no axis {strange[0]!r}; records are given by --motions"
         raise FileError(arguments.dataset, words)
-    selected = case(dataset, motions=motions, **values)
+    try:
+        selected = case(dataset, motions=motions, **values)
+    except StudyError as problem:
+        words = str(problem).replace(NOT_GIVEN, "must be given, by --motions")
+        raise FileError(arguments.dataset, words.removeprefix("case: ")) from problem
     again = selected.simulate()
     again.encoding["source"] = str(Path(arguments.dataset).expanduser())
     return again

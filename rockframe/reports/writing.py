@@ -31,7 +31,7 @@ from rockframe.reports.motions import (
     spectra_section,
 )
 from rockframe.reports.project import Project, project_of_result
-from rockframe.results.outcome import verdict_of
+from rockframe.results.outcome import check_no_means, verdict_of
 from rockframe.results.variables.runs import CERTIFICATE
 from rockframe.simulation.provenance import arguments_of_run
 from rockframe.simulation.system import System
@@ -260,6 +260,8 @@ def _check_dataset(dataset: xr.Dataset) -> None:
             "expected that of system.simulate(motion), rf.sweep(...) or another analysis"
         )
         raise SchemaError(msg)
+    if "status" in dataset:
+        check_no_means(dataset, owner=_OWNER)
 
 
 def _is_run(dataset: xr.Dataset) -> bool:

@@ -21,6 +21,7 @@ from rockframe.dynamics.protocol import (
     Ending,
     column_of,
 )
+from rockframe.errors import SchemaError
 from rockframe.results.schema import SCHEMA
 from rockframe.results.variables.bodies import OF_EACH_BODY, OF_EACH_LINK
 from rockframe.results.variables.runs import Direction
@@ -238,7 +239,17 @@ def scalars(
 def overturns(runs: xr.Dataset) -> xr.DataArray:
     """Return the verdicts of runs, from their status: 1 for overturned, 0 for not, NaN for none."""
     status = runs["status"]
-    return status.copy(data=overturned_from_status(status.to_numpy()), deep=False).drop_attrs()
+    verdicts = status.copy(data=overturned_from_status(status.to_numpy()), deep=False)
+    verdicts.attrs = {}
+    return verdicts
+
+
+def check_no_means(runs: xr.Dataset, *, owner: str) -> None:
+    """Refuse means of runs: the mean of two statuses is none, or a third one."""
+    status = runs["status"].to_numpy()
+    if status.dtype.kind == "f" and np.any(status != np.round(status), where=~np.isnan(status)):
+        msg = f"{owner}: found means of runs, which have no verdict; expected the runs themselves"
+        raise SchemaError(msg)
 
 
 def verdict_of(run: xr.Dataset) -> bool | None:

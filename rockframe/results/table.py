@@ -65,8 +65,8 @@ def table(
     pandas.DataFrame
         Column headings are the name and unit, such as ``peak_rotation [rad]``, or only the
         name if there is no unit or it is 1. Flags are words, such as ``right``; truth values
-        are True and False. A variable over points, bodies or restrainers has a column for each
-        of these, such as ``peak_body_slip 1 [m]``.
+        are True and False; means of them are numbers. A variable over points, bodies or
+        restrainers has a column for each of these, such as ``peak_body_slip 1 [m]``.
 
         The index of joined runs has their dimensions, with one row for each combination. Variables
         of different dimensions, such as responses over the intensity and intensities over the
@@ -274,9 +274,12 @@ def head(name: str, unit: object) -> str:
 
 
 def _in_words(column: Any, values: xr.Variable) -> pd.Series:
-    """Return flags as words, and truth values with gaps as nullable booleans."""
+    """Return flags as words, and truth values with gaps as nullable booleans.
+
+    A mean of flags or of truth values has none of their values, and stays a number.
+    """
     words = flag_words(values.attrs)
-    if values.dtype == bool or not words:
+    if values.dtype == bool or not words or not column.dropna().isin(list(words)).all():
         return column
     if (*words.values(),) == TRUTH:
         return column.astype("boolean")

@@ -182,7 +182,26 @@ def read_continuation(dataset: xr.Dataset, system: Assembly, faults: list[str]) 
         faults.append("initial is the end of a run of another system")
     elif passed and not _returned_within_limit(dataset, system, ending):
         faults.append("initial is the end of a run that overturned")
+    elif cut := _cut_words(dataset):
+        faults.append(cut)
     return ending if faults else _with_reset_peaks(ending, system)
+
+
+def _cut_words(dataset: xr.Dataset) -> str:
+    """Say that the last histories of a run were cut off; empty if they were not."""
+    (time,) = OVER_TIME
+    if time not in dataset.indexes or dataset.sizes[time] < 2:
+        return ""
+    if dataset[time].attrs.get("units") != "s":
+        return ""
+    before, last = dataset[time].to_numpy()[-2:].tolist()
+    end = float(dataset.attrs["solver_end_time"])
+    if end - last <= 1.5 * (last - before):  # the end may be between two times
+        return ""
+    return (
+        f"initial is a part of a run, up to {last:.10g} s; a run is continued from its end, at "
+        f"{end:.10g} s: give all of it, or simulate one with duration='{last:.10g} s'"
+    )
 
 
 def _with_reset_peaks(ending: Ending, system: Assembly) -> Ending:

@@ -12,7 +12,7 @@ import xarray as xr
 from rockframe.arguments import checked_dataset, checked_list
 from rockframe.errors import ComponentError, SchemaError, did_you_mean, short_repr
 from rockframe.results.joining import SWEEP_ATTRIBUTES
-from rockframe.results.outcome import overturns
+from rockframe.results.outcome import check_no_means, overturns
 from rockframe.results.schema import SCHEMA
 from rockframe.results.variables.bodies import BODIES, RESTRAINERS
 from rockframe.results.variables.requests import FORCE_SCALARS, POINT_PEAKS
@@ -166,10 +166,7 @@ def check_runs(value: object, *, owner: str) -> xr.Dataset:
             "attributes"
         )
         raise SchemaError(msg)
-    status = runs["status"].to_numpy()
-    if status.dtype.kind == "f" and np.any(status != np.round(status), where=~np.isnan(status)):
-        msg = f"{owner}: found means of runs, which have no verdict; expected the runs themselves"
-        raise SchemaError(msg)
+    check_no_means(runs, owner=owner)
     if SCALE in runs.coords and "capacity_scale" in runs:  # which is in multiples of the motion
         scales = labels_in_unit(runs[SCALE], Unit.ONE, owner=owner)
         runs = runs.assign_coords(scale=scales.variable)

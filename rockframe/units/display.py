@@ -126,21 +126,16 @@ class DisplayUnits:
         for name, values in dataset.variables.items():
             unit = self.chosen.get(str(values.attrs.get("units")))
             if unit is not None and values.dtype.kind in "fiu":
-                shown_in = dataset[name].copy(data=unit.of(values.to_numpy()))
-                converted[str(name)] = shown_in.assign_attrs(units=unit.words)
+                attributes = {**values.attrs, "units": unit.words}
+                converted[str(name)] = (values.dims, unit.of(values.to_numpy()), attributes)
         coords = {name: converted.pop(name) for name in list(converted) if name in dataset.coords}
         texts = {name: self.convert_text(str(dataset.attrs[name])) for name in _SENTENCES
                 if name in dataset.attrs}  # fmt: skip
-        return (
-            dataset.assign(converted)
-            .assign_attrs(texts)
-            .assign_coords(
-                {
-                    name: (coordinate.dims, coordinate.data, coordinate.attrs)
-                    for name, coordinate in coords.items()
-                }
-            )
-        )
+        # levels of a stacked dimension can be replaced only while they are no index
+        levels = {dim: dataset.indexes[dim].names for dim in dataset.dims
+                  if dim in dataset.indexes and dataset.indexes[dim].nlevels > 1}  # fmt: skip
+        flat = dataset.reset_index(list(levels)).assign(converted).assign_attrs(texts)
+        return flat.assign_coords(coords).set_index(levels)
 
     def convert_text(self, text: str) -> str:
         """Convert the quantities in a text from SI units to these units."""

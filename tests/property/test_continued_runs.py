@@ -129,6 +129,22 @@ def test_invalid_continuations_are_refused():
         system.simulate(MOTION, initial=3)
 
 
+def test_a_part_of_a_run_is_not_continued_from_the_end_of_the_whole():
+    """A selection in time keeps the attributes of the run, and its end with them."""
+    system, whole = SCENES["pads"], unbroken_run("pads")
+    options = {"duration": "0.1 s", "outputs": None}
+    cut = whole.sel(time=slice(0.0, 3.0))
+    with pytest.raises(AssemblyError, match=r"a part of a run, up to 3 s; .* duration='3 s'"):
+        system.simulate(MOTION, initial=cut, **options)
+    expected = system.simulate(MOTION, initial=whole, **options)
+    for part in (whole.sel(time=slice(3.0, None)), whole.isel(time=slice(None, None, 7)),
+                 whole.drop_dims("time")):  # fmt: skip
+        assert system.simulate(MOTION, initial=part, **options).end_state == expected.end_state
+    rare = system.simulate(MOTION, output_step="0.7 s")
+    assert rare.time[-1] < rare.solver_end_time
+    system.simulate(MOTION, initial=rare, **options)
+
+
 def test_run_that_returned_from_beyond_overturning_angle_continues():
     """With overturning="continue" as one run; runs that overturned or fell flat are refused."""
     system = rf.System(rf.Block(width="1 m", height="5 m", mass="10 t"))

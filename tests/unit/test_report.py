@@ -262,6 +262,9 @@ def test_only_results_are_reported(response, tmp_path):
     ):
         with pytest.raises(SchemaError, match=words):
             rf.report(value, tmp_path / "x.html")
+    runs = rf.sweep(rf.System(BLOCK), SUITE, scale=[0.5, 3.0], duration="3 s", progress=False)
+    with xr.set_options(keep_attrs=True), pytest.raises(SchemaError, match="found means of runs"):
+        rf.report(runs.mean("scale"), tmp_path / "x.html")
     assert not (tmp_path / "x.html").exists()
 
 

@@ -222,6 +222,35 @@ def test_variables_of_other_dimensions_have_separate_rows():
     assert alone.index.names == ["quantile", "response_level"]
 
 
+def test_means_of_runs_are_numbers(study):
+    """Truth values and flags that are averaged keep their attributes, but are words no more."""
+    with xr.set_options(keep_attrs=True):
+        means = rf.table(study.expand_dims(site=2).mean("scale"))
+        same = rf.table(study.expand_dims(site=2).mean("site"))
+    share = float(study.overturned.mean())
+    assert 0.0 < share < 1.0
+    assert means["overturned"].tolist() == [share, share]
+    assert means["status"].tolist() == [float(study.status.mean())] * 2
+    assert same["status"].tolist() == ["completed", "completed", "overturned"]
+    assert same["overturned"].tolist() == [False, False, True]
+
+
+@pytest.mark.filterwarnings("error::FutureWarning")
+def test_stacked_sweeps_are_tables_and_fragilities_in_any_unit():
+    """xarray refuses to replace a level of an index, and warns when one of several is deleted."""
+    motions = {"one": PULSE, "two": PULSE.scaled(1.5)}
+    options = {"width": ["0.6 m", "0.8 m"], "free_vibration": "3 s", "progress": False}
+    runs = rf.sweep(SYSTEM, motions, scale=[1, 2, 9], **options)
+    stacked = runs.stack(case=("scale", "width", "motion"))
+    units = {"angle": "deg", "length": "cm"}
+    expected = rf.table(runs, units=units)
+    found = rf.table(stacked, units=units)
+    assert found.index.names == ["scale", "width [cm]", "motion"]
+    pd.testing.assert_frame_equal(found, expected, check_exact=True)
+    medians = rf.fragility(stacked, "PGA", limits=[]).median_intensity
+    np.testing.assert_allclose(medians, rf.fragility(runs, "PGA", limits=[]).median_intensity)
+
+
 def test_invalid_table_arguments_are_refused(runs, study):
     for dataset, options, words in (
         ("run.nc", (), "open a file with xr.open_dataset first"),

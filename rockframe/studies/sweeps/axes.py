@@ -231,7 +231,7 @@ def labels_in_unit(labels: xr.DataArray, unit: str | None, *, owner: str) -> xr.
 def in_units_of_schema(dataset: xr.Dataset, *, owner: str) -> xr.Dataset:
     """Return variables in their units, if a user has converted them, for example for a figure."""
     converted = {
-        name: labels_in_unit(values, SCHEMA[str(name)].unit, owner=owner)
+        name: labels_in_unit(values, SCHEMA[str(name)].unit, owner=owner).variable
         for name, values in dataset.data_vars.items()
         if name in SCHEMA
     }

@@ -289,6 +289,12 @@ def test_study_report_accepts_records_target_and_checks(run_command, folder, mon
     )
     assert run_command("study", "study.toml", "-o", "runs.nc")[0] == 0
     monkeypatch.setattr("rockframe.studies.sweeps.study._cache", {})  # as in another process
+    one = ["--case", "scale=2", "motion=1", "-o", "one.html", "--no-certificate"]
+    code, _, err = run_command("report", "runs.nc", *one)
+    assert (code, "as motions=" in err) == (2, False)
+    assert err.startswith("rockframe report: runs.nc: the record '1' ")
+    assert "must be given, by --motions" in err
+    assert run_command("report", "runs.nc", "--motions", "records", *one)[0] == 0
     spectrum = ["--target", "eurocode_8", "ground_acceleration=0.2 g_0", "ground_type=B"]
     check = ["--check", "circolare_2019", "confidence_factor=1.2"]
     component = ["--check", "asce_7_22", "spectral_acceleration=1"]
