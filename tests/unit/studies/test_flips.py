@@ -77,6 +77,15 @@ def test_a_gap_is_rounded_up(gap):
     assert gap * (1.0 - 1e-9) <= stated <= 1.1 * gap
 
 
+@pytest.mark.parametrize("width", [1e-2, 1e-4, 1e-7])
+def test_sentence_has_the_digits_of_the_bracket(width):
+    look, _ = runs_of(lambda scale: scale / math.pi)
+    scan = scan_scales(look, ROW, max_runs=100, width=width)
+    stated = flips_sentence(scan, width=width).partition("from ")[2].partition(" times")[0]
+    [flip] = scan.flips()
+    assert float(stated) == pytest.approx(flip.above, rel=0.5 * width)
+
+
 def test_a_run_without_a_verdict_leaves_a_gap():
     look, _ = runs_of(lambda scale: 0.05, undecided=lambda scale: 1.05 < scale < 1.45)
     assert scan_scales(look, ROW, max_runs=41, width=1e-3).largest_gap == pytest.approx(0.5)
