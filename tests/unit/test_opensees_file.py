@@ -71,6 +71,9 @@ def test_opensees_model_matches_the_system(base, dashpots, tmp_path):
     damping = rest[0] if dashpots == "let go" else materials[4][2]
     vertical = stiffness * len(springs), damping * len(springs)
     if base == "soil":
+        # each spring is in the middle of its part of the bed
+        ends = np.linspace(-0.4, 0.4, 11)
+        np.testing.assert_allclose(parameters["springs_at"], 0.5 * (ends[1:] + ends[:-1]))
         np.testing.assert_allclose(vertical, [0.8 * 9e6, 0.8 * system.setting.support.damping])
     elif base == "pads":
         setting = system.setting.support
