@@ -60,7 +60,7 @@ class MeasuredPeaks:
     @property
     def signed(self) -> bool:
         """Whether the peaks have signs, and are not absolute values."""
-        return bool(self.sides[0] != self.sides[-1] or np.any(np.diff(self.sides)))
+        return bool(np.any(np.diff(self.sides)))
 
 
 def read_history(value: object) -> History:
@@ -93,6 +93,9 @@ def read_peaks(value: object) -> MeasuredPeaks:
     else:
         msg = f"{OWNER}: peaks needs rotations with a unit, got {short_repr(value)}; {_PEAKS}"
         raise UnitsError(msg)
+    if peaks.rotation.size < 2:
+        msg = f"{OWNER}: found one peak, the release; expected those of the swings after it, too"
+        raise ComponentError(msg)
     side_changes = np.diff(peaks.sides)
     if not np.all(peaks.sides) or (peaks.signed and not np.all(side_changes)):
         msg = (

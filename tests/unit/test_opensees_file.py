@@ -71,10 +71,21 @@ def test_opensees_model_matches_the_system(base, dashpots, tmp_path):
     damping = rest[0] if dashpots == "let go" else materials[4][2]
     vertical = stiffness * len(springs), damping * len(springs)
     if base == "soil":
+        # each spring is in the middle of its part of the bed
+        ends = np.linspace(-0.4, 0.4, 11)
+        np.testing.assert_allclose(parameters["springs_at"], 0.5 * (ends[1:] + ends[:-1]))
         np.testing.assert_allclose(vertical, [0.8 * 9e6, 0.8 * system.setting.support.damping])
     elif base == "pads":
         setting = system.setting.support
         np.testing.assert_allclose(vertical, [2.0 * setting.stiffness, 2.0 * setting.damping])
+    else:  # 400 times the frequency parameter p, with 0.7 of critical damping
+        moment = 2000.0 * system.setting.gravity * np.hypot(0.4, 2.0)
+        bounce = 400.0 * np.sqrt(moment / (expected + 2000.0 * (0.4**2 + 2.0**2)))
+        np.testing.assert_allclose(vertical, [2000.0 * bounce**2, 2.0 * 0.7 * 2000.0 * bounce])
+    # the fewest steps, but two at least, that give each bounce its number of steps
+    steps = 0.01 / (2.0 * np.pi / np.sqrt(vertical[0] / 2000.0))
+    steps *= 20 if base == "rigid ground" else 80
+    assert parameters["steps_per_output"] == max(2, np.ceil(steps))
     weight = 2000.0 * system.setting.gravity
     sunk = next(call[-1] for call in materials.values() if call[0] == "InitStrainMaterial")
     assert -sunk * vertical[0] == pytest.approx(weight, rel=1e-12)

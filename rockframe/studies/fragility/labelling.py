@@ -277,7 +277,7 @@ def with_stripes(
     size = len(middles)
     count, exceeded = np.zeros((2, len(counted), size), dtype=np.int64)
     for row, (columns, verdict) in enumerate(counted):
-        is_valid = ~np.isnan(verdict) & (columns[:, 0] > 0.0)
+        is_valid = ~np.isnan(verdict) & (columns[:, 0] > 0.0) & np.isfinite(columns[:, 0])
         place = np.searchsorted(cuts, np.log(columns[is_valid, 0]), side="right") - 1
         place = np.clip(place, 0, max(size - 1, 0))
         count[row] = np.bincount(place, minlength=size)

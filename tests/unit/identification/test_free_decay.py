@@ -153,6 +153,23 @@ def changed(values, index, value):
     return copy
 
 
+def test_times_of_peaks_count_as_data_from_any_start():
+    start = rf.InitialState(rotation="0.1 rad")
+    run = TRUTH.simulate(duration="4 s", initial=start, output_step="1 ms")
+    swings = swings_of(History(run.time.to_numpy(), run.rotation.to_numpy()))
+    rotation, times = swings.peaks.rotation[:3], np.append(0.0, swings.peaks.time[1:3])
+    # six data tell three unknowns
+    found = rf.fit_free_decay(START, peaks=((times + 100.0, "s"), (rotation, "rad")))
+    assert found.release_time.item() == pytest.approx(100.0, abs=1e-3)
+    given = rf.fit_free_decay(
+        START,
+        peaks=((times + 100.0, "s"), (rotation, "rad")),
+        circumstances="initial_rotation",
+    )
+    assert given.release_time.item() == 100.0
+    np.testing.assert_allclose(given.fitted_value, found.fitted_value, rtol=1e-3)
+
+
 REFUSED = [
     (
         {"measured": history(changed(SWING, 7, math.nan))},
@@ -170,6 +187,7 @@ REFUSED = [
     ({"measured": history(), "confidence": 1.0}, "above 0 and below 1"),
     ({"measured": history(), "circumstances": "weather"}, "circumstances must be"),
     ({"peaks": ([6.0, 5.0], "deg")}, "2 data do not tell 2 unknowns"),
+    ({"peaks": (([0.0], "s"), ([6.0], "deg")), "circumstances": ()}, "found one peak"),
     ({"peaks": ([6.0, -5.0, -4.0, 3.0], "deg")}, "must alternate in sign"),
     ({"peaks": ([6.0, 5.0, 0.0], "deg")}, "none be zero"),
     ({"peaks": ([6.0, 20.0, 3.0], "deg")}, "peak 2 is 0.349066 rad"),

@@ -77,6 +77,15 @@ def test_a_gap_is_rounded_up(gap):
     assert gap * (1.0 - 1e-9) <= stated <= 1.1 * gap
 
 
+@pytest.mark.parametrize("width", [1e-2, 1e-4, 1e-7])
+def test_sentence_has_the_digits_of_the_bracket(width):
+    look, _ = runs_of(lambda scale: scale / math.pi)
+    scan = scan_scales(look, ROW, max_runs=100, width=width)
+    stated = flips_sentence(scan, width=width).partition("from ")[2].partition(" times")[0]
+    [flip] = scan.flips()
+    assert float(stated) == pytest.approx(flip.above, rel=0.5 * width)
+
+
 def test_a_run_without_a_verdict_leaves_a_gap():
     look, _ = runs_of(lambda scale: 0.05, undecided=lambda scale: 1.05 < scale < 1.45)
     assert scan_scales(look, ROW, max_runs=41, width=1e-3).largest_gap == pytest.approx(0.5)
@@ -95,6 +104,16 @@ def test_sentence_states_resolved_range_when_runs_are_exhausted():
     assert sentence.endswith(
         "Beyond 0 some are more than 2 % apart, and a lesser scale between them may overturn."
     )
+
+
+def test_gaps_are_halved_only_below_the_least_scale_that_overturns():
+    look, tried = runs_of(lambda scale: scale / math.pi)
+    found = scan_scales(look, ROW, max_runs=1000, width=1e-4, resolution=0.02, may_slide=True)
+    [flip] = found.flips()
+    below = [ends for ends in pairwise(found.runs) if 0.0 < ends[0] and ends[1] <= flip.above]
+    assert all(far - near <= 0.02 * far for near, far in below)
+    assert {scale for scale in tried if scale > ROW[32]} == set(ROW[33:])
+    assert found.resolved_up_to == ROW[32]
 
 
 @pytest.mark.parametrize("resolution", [0.05, 0.02, pytest.param(0.005, marks=pytest.mark.long)])

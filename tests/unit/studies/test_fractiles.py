@@ -37,6 +37,9 @@ def test_fractiles_of_three_motions_match_hand_calculation():
         at.response_fractile, [[0.2, 0.3, 0.4], [0.3, 0.6, 0.8], [0.5, np.inf, np.inf]], atol=1e-12
     )
     assert at.overturned_count.values.tolist() == [0, 1, 1]
+    # up to its fall a response is that of the last run that stands
+    before = curves.motion_response.sel(scale=1.25, method="nearest")
+    np.testing.assert_allclose(before, [0.25, 0.45, 0.5], atol=1e-12)
     # level 0.15: 0.75, and the others at the least scale; 0.55: never, 1 + 0.5 * 0.25 / 0.3, 1.5
     middle = 1.0 + 0.5 * 0.25 / 0.3
     np.testing.assert_allclose(
@@ -56,6 +59,8 @@ def test_response_and_intensity_fractiles_of_rising_curves_are_inverse():
     runs = synthetic_runs(rows, np.zeros(rows.shape, dtype=bool))
     shares = [0.16, 0.5, 0.84]  # 11 q is not an integer
     curves = rf.fractile_curves(runs, fractiles=shares)
+    levels = np.linspace(rows.min(), rows.max(), curves.sizes["scale"] + 1)[1:]
+    np.testing.assert_allclose(curves.response_level, levels, rtol=1e-12)
     for share, rest in zip(shares, reversed(shares), strict=True):
         response = curves.response_fractile.sel(quantile=share).values
         level = rf.fractile_curves(

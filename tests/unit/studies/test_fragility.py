@@ -85,6 +85,7 @@ def test_clopper_pearson_bounds_match_scipy():
     found = fragility_of_baker()
     assert found.stripe_exceedances.values.tolist() == EXCEEDED
     assert found.stripe_trials.values.tolist() == [40] * 8
+    assert found.stripe_fraction.values.tolist() == [over / 40 for over in EXCEEDED]
     assert found.stripe_intensity.values == pytest.approx(np.array(LEVELS) * GRAVITY)
 
 
@@ -326,6 +327,16 @@ def test_fragility_accepts_two_measures_and_a_custom_measure(runs):
         rf.fragility(runs, "SA")
     with pytest.raises(ComponentError, match="must be one of"):
         rf.fragility(runs, "magnitude")
+
+
+def test_runs_without_a_finite_intensity_are_in_no_stripe(runs):
+    own = runs.scale * xr.ones_like(runs.status, dtype=float)
+    own = own.rename("mine").assign_attrs(units="1")
+    own[{"scale": 0, "motion": 0}], own[{"scale": 0, "motion": 1}] = np.inf, 0.0
+    found = rf.fragility(runs, own, limits=())
+    counts = found.trial_count.item(), found.left_out_count.item()
+    assert counts == (found.stripe_trials.sum().item(), 2)
+    assert sum(counts) == runs.status.size
 
 
 def test_custom_measure_is_aligned_by_labels(runs):

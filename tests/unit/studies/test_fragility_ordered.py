@@ -114,6 +114,11 @@ def test_limit_states_without_a_fit_do_not_affect_others():
     parted = np.stack([logs > -0.2, logs > 0.3]).astype(float)
     fits = ordered_fits(logs, parted, np.arange(len(logs)), NAMES[:2], Bands.SANDWICH)
     assert fits[0].status is FragilityStatus.SEPARATED
+    ends = np.concatenate([nobody + 1.0, parted[:1], nobody])
+    fits = ordered_fits(logs, ends, np.arange(len(logs)), NAMES, Bands.SANDWICH)
+    assert [one.status for one in fits] == [
+        FragilityStatus.ALL_EXCEEDED, FragilityStatus.SEPARATED, FragilityStatus.NONE_EXCEEDED
+    ]  # fmt: skip
     same = 1e-15 * logs
     fits = ordered_fits(same, verdicts[:2], np.arange(len(logs)), NAMES[:2], Bands.SANDWICH)
     assert {one.status for one in fits} == {FragilityStatus.ONE_INTENSITY}

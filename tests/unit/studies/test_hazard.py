@@ -274,6 +274,11 @@ def test_rate_beyond_the_hazard_table_warns(curve):
         ({"intensity": (VALUES, "g_0")}, ComponentError, "a table of hazard has"),
         ({"intensity": (VALUES, "g_0"), "probability": RATES + 1, "years": 50}, ComponentError,
          "above 0 and below 1"),
+        *(
+            ({"intensity": ([0.1, 0.2], "g_0"), "probability": ends, "years": 50}, ComponentError,
+             "above 0 and below 1")
+            for ends in ([0.5, 0.0], [1.0, 0.5])
+        ),
         ({"intensity": ([0.1], "g_0"), "rate": [1e-3]}, ComponentError, "two intensities or more"),
         *(
             ({"intensity": (values, "g_0"), "rate": rates}, ComponentError, "above zero rise")
