@@ -49,15 +49,16 @@ def test_peak_just_before_an_event_is_found():
     assert (peak, time) == (7.0, 1.0)
 
 
-def test_peak_inside_a_step_is_found_by_a_parabola():
+@pytest.mark.parametrize("middle", [0.51, 0.54, 0.77, 0.96, 0.99])
+def test_peak_inside_a_step_is_found_by_a_parabola(middle):
     def inside(which):
         place = 0.5 * (which[:, None] - 1 + FRACTIONS)
-        return {"demand": (3.0 - (place - 0.77) ** 2).ravel()}
+        return {"demand": (3.0 - (place - middle) ** 2).ravel()}
 
-    ends = [3.0 - (t - 0.77) ** 2 for t in (0.5, 1.0, 1.5)]
-    (peak,), (time,) = along(ends, {0: 3.0 - 0.77**2}, inside).largest(demand)
+    ends = [3.0 - (t - middle) ** 2 for t in (0.5, 1.0, 1.5)]
+    (peak,), (time,) = along(ends, {0: 3.0 - middle**2}, inside).largest(demand)
     assert peak == pytest.approx(3.0, rel=1e-14)
-    assert time == pytest.approx(0.77, rel=1e-12)
+    assert time == pytest.approx(middle, rel=1e-12)
 
 
 def test_infinite_demand_is_interpolated_by_its_reciprocal():
@@ -72,6 +73,16 @@ def test_demand_never_above_limit_has_no_time():
     first, duration = along([1.0, 2.0], {0: 0.0}).above(lambda values: values["demand"], 2.0)
     assert math.isnan(first)
     assert duration == 0.0
+
+
+@pytest.mark.parametrize("seed", range(6))
+def test_time_above_a_level_in_magnitude_is_that_of_straight_lines(seed):
+    ends = np.random.default_rng(seed).uniform(-3.0, 3.0, 13)
+    first, duration = along(ends[1:], {0: ends[0]}).above(lambda values: values["demand"], 1.2)
+    time, step = np.linspace(0.0, 6.0, 60_001, retstep=True)
+    above = np.abs(np.interp(time, 0.5 * np.arange(13), ends)) > 1.2
+    assert first == pytest.approx(time[above][0], abs=1.01 * step)
+    assert duration == pytest.approx(step * above.sum(), abs=26 * step)
 
 
 def test_first_of_equal_peaks_is_reported():
