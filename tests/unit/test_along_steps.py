@@ -99,6 +99,12 @@ def test_peak_at_step_end_is_found_among_many_candidate_steps():
     assert (peak, time) == (7.0, 125.0)
 
 
+def test_peak_just_after_an_event_is_found_among_many_candidate_steps():
+    kinks, fall = [1.0, 6.0] * 100, list(np.linspace(7.0, 1.0, 50))
+    (peak,), (time,) = along(kinks + fall[1:], {0: 1.0, 200: 7.0}).largest(demand)
+    assert (peak, time) == (7.0, 100.0)
+
+
 @pytest.mark.parametrize("jump", [1, 4])
 def test_no_parabola_is_fitted_through_a_kink(jump):
     """A base in renewed contact that slips needs its friction at once, and no more."""
