@@ -5,7 +5,9 @@ import math
 import numpy as np
 import pytest
 
+import rockframe as rf
 from rockframe.results.along_steps import FRACTIONS, AlongSteps
+from rockframe.simulation.friction_checks import sliding_checks
 from rockframe.solve.trajectory import Steps
 
 
@@ -59,6 +61,25 @@ def test_peak_inside_a_step_is_found_by_a_parabola(middle):
     (peak,), (time,) = along(ends, {0: 3.0 - middle**2}, inside).largest(demand)
     assert peak == pytest.approx(3.0, rel=1e-14)
     assert time == pytest.approx(middle, rel=1e-12)
+
+
+@pytest.mark.parametrize("friction", [0.298, 0.302])
+def test_sliding_begins_at_a_peak_within_a_step(friction):
+    def named(values):
+        return dict.fromkeys(("friction_demand", "horizontal_reaction"), 0.1 * values)
+
+    def inside(which):
+        place = 0.5 * (which[:, None] - 1 + FRACTIONS)
+        return named((3.0 - (place - 0.77) ** 2).ravel())
+
+    found = along([3.0 - (t - 0.77) ** 2 for t in (0.5, 1.0, 1.5)], {0: 3.0 - 0.77**2})
+    found = AlongSteps(found.steps, named(found.shown["demand"]), inside)
+    block = rf.Block(width="0.5 m", height="2 m", mass="400 kg")
+    system = rf.System(block, rf.RigidGround(friction=friction), sliding="checked")
+    (check,) = sliding_checks(system.assembly, found)
+    assert check.needed == pytest.approx(0.3, rel=1e-14)
+    assert check.slides == (friction < 0.3)
+    assert check.first == pytest.approx(0.77 if check.slides else math.nan, nan_ok=True)
 
 
 def test_infinite_demand_is_interpolated_by_its_reciprocal():

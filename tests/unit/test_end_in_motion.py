@@ -227,6 +227,7 @@ def test_stored_energy_bound_is_infinite_on_slopes_under_loads_and_before_walls(
         (rf.System(BLOCK, PADS, inclination="5 deg"), 0.01),
         (rf.System(BLOCK, PADS, rf.Load(at=("0 m", "2 m"), vertical="9 kN")), 0.01),
         (rf.System(BLOCK, rf.RearWall(side="left", stiffness="2 MN/m", gap="5 mm")), -0.01),
+        (rf.System(BLOCK, rf.RearWall(side="left", restitution=-0.4)), 0.01),
     ):
         assert max_stored_energy(system.assembly, rotation) == math.inf
     assert 0.0 < level < math.inf
