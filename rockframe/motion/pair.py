@@ -31,6 +31,8 @@ from rockframe.units import ANGLE, Quantity, QuantityLike, quantity
 
 _RIGHT_ANGLE: Final = 90.0
 _TOLERANCE: Final = 1.0  # degree; agencies round azimuths to whole degrees
+_ROUNDING: Final = 1e-14
+"""Share of the mean intensity below which a common one is rounding."""
 _EXAMPLE: Final = "HorizontalPair(north, east)"
 
 
@@ -301,9 +303,12 @@ def principal_axis_and_intensities(pair: HorizontalPair) -> tuple[float, float, 
         float(knots_of(arias_path(pair.rotated(angle).si.horizontal, STANDARD_GRAVITY))[-1])
         for angle in ("0 deg", "45 deg", "90 deg")
     )
-    common = both - 0.5 * (first + second)
+    middle = 0.5 * (first + second)
+    common = both - middle
+    if abs(common) <= _ROUNDING * middle:
+        common = 0.0  # a negative one would make 90 degrees -90 degrees
     angle = 0.5 * math.atan2(2.0 * common, first - second)
-    middle, spread = 0.5 * (first + second), math.hypot(common, 0.5 * (first - second))
+    spread = math.hypot(common, 0.5 * (first - second))
     return angle, middle + spread, max(middle - spread, 0.0)
 
 

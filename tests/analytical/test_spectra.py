@@ -294,6 +294,16 @@ def test_measures_of_a_sine_pulse():
         assert found[name].item() == pytest.approx(value, rel=1e-9), name
 
 
+@pytest.mark.parametrize("period", [0.7, 1.3])
+def test_cumulative_absolute_velocity_of_a_ricker_wavelet(period):
+    """The acceleration changes its sign between samples."""
+    pulse = rf.GroundMotion.ricker_wavelet("2 m/s^2", f"{period} s")
+    highest = 2.0 * period / (math.sqrt(2.0) * math.pi) * math.exp(-0.5)
+    found = intensity_measures(pulse)
+    assert found.peak_ground_velocity.item() == pytest.approx(highest, rel=1e-11)
+    assert found.cumulative_absolute_velocity.item() == pytest.approx(4.0 * highest, rel=1e-11)
+
+
 @pytest.mark.parametrize("cycles", [0.01, 0.5, 1.7])
 def test_significant_durations_of_a_sine_pulse(cycles):
     """Arias intensity grows as t - sin(2 rate t)/(2 rate), also between the samples."""

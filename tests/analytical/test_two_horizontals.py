@@ -220,6 +220,14 @@ def test_components_along_principal_axes_are_uncorrelated():
     assert measured.arias_intensity.values == pytest.approx(factor * np.diag(matrix))
 
 
+@pytest.mark.parametrize("seed", range(8))
+def test_principal_axis_along_the_second_component_is_at_90_degrees(seed):
+    # not at -90 degrees, by rounding
+    moving = noise(seed, 280)
+    pair = rf.HorizontalPair(moving.scaled(0.0), moving)
+    assert rf.measures.principal_axes(pair).major_axis_angle == 0.5 * math.pi
+
+
 def test_weak_orthogonal_pulse_does_not_turn_principal_axis():
     pulse = rf.GroundMotion.sine_pulse("1e-6 m/s^2", "1 Hz", cycles=2)
     noise = np.random.default_rng(0).normal(size=len(pulse))

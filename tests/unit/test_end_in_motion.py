@@ -219,13 +219,15 @@ def test_stored_energy_does_not_exceed_its_bound(system, share):
     assert stored <= max_stored_energy(system.assembly, rotation) * (1.0 + 1e-9)
 
 
-def test_stored_energy_bound_is_infinite_on_slopes_and_under_loads():
-    """On a slope or under a load more energy is stored than by the weight alone, without bound."""
+def test_stored_energy_bound_is_infinite_on_slopes_under_loads_and_before_walls():
+    """There more energy is stored than by the weight alone, without bound."""
     level = max_stored_energy(rf.System(BLOCK, PADS).assembly, 0.01)
     for system, rotation in (
         (rf.System(BLOCK, PADS, inclination="5 deg"), -0.01),
         (rf.System(BLOCK, PADS, inclination="5 deg"), 0.01),
         (rf.System(BLOCK, PADS, rf.Load(at=("0 m", "2 m"), vertical="9 kN")), 0.01),
+        (rf.System(BLOCK, rf.RearWall(side="left", stiffness="2 MN/m", gap="5 mm")), -0.01),
+        (rf.System(BLOCK, rf.RearWall(side="left", restitution=-0.4)), 0.01),
     ):
         assert max_stored_energy(system.assembly, rotation) == math.inf
     assert 0.0 < level < math.inf

@@ -194,7 +194,7 @@ def baseline_corrected(
     highest = min(_HIGHEST_DEGREE, len(motion) - 1)
     order = checked_integer(order, owner=owner, name="order", lowest=lowest, highest=highest)
     if fitted is Baseline.VELOCITY:
-        result = map_samples(si, lambda signal: without_drift(si.time_step, signal.samples, order))
+        result = map_samples(si, lambda signal: without_drift(signal.samples, order))
         step = (
             f"baseline corrected: slope of the polynomial of degree {order} through the "
             "velocity subtracted (least squares)"

@@ -198,12 +198,13 @@ def without_baseline(samples: Array, order: int) -> Array:
     return samples - basis @ coefficients
 
 
-def without_drift(dt: float, samples: Array, order: int) -> Array:
+def without_drift(samples: Array, order: int) -> Array:
     """Subtract the slope of the polynomial that fits the velocity best (least squares)."""
     slopes = np.polynomial.legendre.legvander(np.linspace(-1.0, 1.0, samples.size), order - 1)
-    # integrated like the motion, so that a polynomial drift is removed exactly
+    # integrated like the motion, so that a polynomial drift is removed exactly; in units in which
+    # half a time step is 1, which changes no coefficient
     columns = np.column_stack([slopes, samples])
-    steps = 0.5 * dt * (columns[1:] + columns[:-1])
+    steps = columns[1:] + columns[:-1]
     path = np.concatenate([np.zeros((1, order + 1)), np.cumsum(steps, axis=0)])
     coefficients = np.linalg.lstsq(path[:, :-1], path[:, -1], rcond=None)[0]
     return samples - slopes @ coefficients

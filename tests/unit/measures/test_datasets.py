@@ -135,6 +135,14 @@ def test_standardized_absolute_velocity_interpolates_start_of_second(peak, count
     assert (standard == pytest.approx(total)) is counts
 
 
+@pytest.mark.parametrize("count", range(2, 12))
+def test_standardized_absolute_velocity_of_a_strong_motion_is_the_whole(count):
+    motion = rf.GroundMotion.from_arrays((np.ones(count), "m/s^2"), "0.25 s")
+    measures = intensity_measures(motion)
+    for name in ("cumulative_absolute_velocity", "standardized_cumulative_absolute_velocity"):
+        assert measures[name].item() == pytest.approx(0.25 * (count - 1)), name
+
+
 def test_standardized_absolute_velocity_leaves_out_weak_seconds():
     samples = np.concatenate([np.full(110, 0.2), np.full(80, 1.0), np.full(161, 0.1)])
     motion = rf.GroundMotion.from_arrays((samples, "m/s^2"), "0.01 s")

@@ -46,12 +46,14 @@ def spectra(record):
     return response_spectrum(record, PERIODS, (0.0, 0.05))
 
 
-def test_measures_scale_with_motion():
-    one = intensity_measures(motion(), block=BLOCK)
-    threefold = intensity_measures(motion().scaled(3.0), block=BLOCK)
+@pytest.mark.parametrize("factor", [3.0, 1e-6])
+def test_measures_scale_with_motion(factor):
+    one, record = intensity_measures(motion(), block=BLOCK), motion().scaled(factor)
+    scaled = intensity_measures(record, block=BLOCK)
     for name, power in POWERS.items():
-        assert threefold[name].item() == pytest.approx(3.0**power * one[name].item(), rel=1e-12)
-    rescaled = intensity_measures(motion().scaled(3.0), block=BLOCK, threshold="0.15 g_0")
+        expected = pytest.approx(factor**power * one[name].item(), rel=1e-12, abs=0.0)
+        assert scaled[name].item() == expected, name
+    rescaled = intensity_measures(record, block=BLOCK, threshold=f"{0.05 * factor} g_0")
     assert rescaled.bracketed_duration.item() == pytest.approx(
         one.bracketed_duration.item(), rel=1e-12
     )

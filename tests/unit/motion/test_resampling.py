@@ -7,6 +7,7 @@ from hypothesis import strategies as st
 
 from rockframe.errors import ComponentError, UnitsError
 from rockframe.motion import GroundMotion
+from rockframe.motion.processing.samples import divided_signal
 
 RNG = np.random.default_rng(20)
 NOISE = RNG.normal(size=400)
@@ -175,6 +176,18 @@ def test_refined_pulse_is_sampled_from_the_function():
     fine = GroundMotion.sine_pulse("1 m/s^2", "1 Hz").resampled("0.001 s")
     exact = np.sin(2.0 * np.pi * 0.001 * np.arange(1001))
     assert fine.si.horizontal.samples == pytest.approx(exact, abs=1e-12)
+
+
+@pytest.mark.parametrize("parts", [1, 2, 3, 8])
+@pytest.mark.parametrize("record", [motion(), GroundMotion.cosine_pulse("1 m/s^2", "1 Hz")])
+def test_divided_signals_are_the_same_function(record, parts):
+    signal = record.si.horizontal
+    divided = divided_signal(signal, parts)
+    assert divided.analytic == signal.analytic
+    assert divided.samples[::parts].tolist() == signal.samples.tolist()
+    assert divided.samples == pytest.approx(signal.at(divided.times), rel=1e-12, abs=1e-12)
+    time = np.linspace(0.0, signal.duration, 997)
+    assert divided.at(time) == pytest.approx(signal.at(time), rel=1e-12, abs=1e-12)
 
 
 @settings(max_examples=60, deadline=None)

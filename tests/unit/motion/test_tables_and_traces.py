@@ -35,6 +35,11 @@ class TestTimesOfAnArray:
             series = pd.Series(VALUES, index=index)
             assert len(GroundMotion.from_arrays((series, "m/s^2"), "0.02 s")) == COUNT
 
+    def test_index_of_two_times_is_read(self):
+        series = pd.Series(VALUES[:2], index=TIMES[:2])
+        with pytest.raises(ComponentError, match=r"has the step 0\.01 s, but time_step is 0\.02 s"):
+            GroundMotion.from_arrays((series, "m/s^2"), "0.02 s")
+
     def test_an_uneven_index_is_refused(self):
         series = pd.Series(VALUES, index=UNEVEN)
         with pytest.raises(ComponentError, match=r"is not even.*from_times"):
@@ -120,6 +125,15 @@ class TestFromTimes:
     def test_dates(self):
         motion = GroundMotion.from_times(DATES, (VALUES, "m/s^2"), "0.01 s")
         np.testing.assert_allclose(motion.si.horizontal.samples, VALUES, atol=1e-6)
+        shortest = GroundMotion.from_times(DATES[:2], (VALUES[:2], "m/s^2"), "0.01 s")
+        np.testing.assert_allclose(shortest.si.horizontal.samples, VALUES[:2], atol=1e-6)
+
+    @pytest.mark.parametrize(
+        "dates", [DATES[:0], DATES[:1], DATES.insert(COUNT, pd.NaT), DATES.values[:, None]]
+    )
+    def test_dates_that_are_no_times_are_refused(self, dates):
+        with pytest.raises(ComponentError, match="needs two or more dates, and none missing"):
+            GroundMotion.from_times(dates, (np.zeros(len(dates)), "m/s^2"), "0.01 s")
 
     def test_time_step_longer_than_intervals_warns(self):
         with pytest.warns(RecordWarning, match="longer than the intervals"):

@@ -12,6 +12,8 @@ from rockframe.errors import ComponentError, UnitsError
 from rockframe.motion import GroundMotion
 from rockframe.motion.processing import velocity_pulses
 from rockframe.motion.processing.velocity_pulses import (
+    WaveletPeak,
+    extract_wavelets,
     mother_wavelet,
     pulse_measures,
     scaling_filter,
@@ -249,3 +251,12 @@ def test_the_figure_shows_the_three_velocities():
         rf.plot.velocity_pulse(result, ax=[panels[0]])
     with pytest.raises(ComponentError, match="needs a VelocityPulse"):
         rf.plot.velocity_pulse(motion)
+
+
+def test_wavelets_of_a_pulse_are_near_the_strongest_one():
+    """Within 0.4 of their scale, the period times the centre frequency of 5/7."""
+    dt, velocity = 0.01, np.random.default_rng(2).normal(size=2000)
+    peak = WaveletPeak(period=2.0, sample=900, direction=0.0)
+    distances = [abs(middle - 900) for middle, _ in extract_wavelets(velocity, dt, peak)]
+    assert len(distances) == 10
+    assert 0.5 * 58 < max(distances) <= 58  # 0.4 * 2.0 * 5/7 / 0.01 = 57.1, rounded up

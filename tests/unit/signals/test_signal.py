@@ -43,6 +43,9 @@ def test_values_at_sample_times_equal_samples(signal):
     assert signal.at(signal.times).tolist() == signal.samples.tolist()
     late, early = signal.times * (1.0 + 1e-15), signal.times * (1.0 - 1e-15)
     assert signal.at(late).tolist() == signal.at(early).tolist() == signal.samples.tolist()
+    shifts = np.array([-1e-11, 1e-11]) * STEP
+    assert signal.at(shifts).tolist() == [signal.samples[0]] * 2
+    assert signal.at(signal.duration + shifts).tolist() == [signal.samples[-1]] * 2
 
 
 def test_jump_between_pieces_gives_sample_or_later_piece():
