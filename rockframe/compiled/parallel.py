@@ -249,9 +249,9 @@ def _compilers_run() -> bool:
 class BackgroundCompilation:
     """The compilation of a call's jobs by another process while calls run in plain Python.
 
-    A context manager, whose blocks are these calls. The other process also compiles what they do
-    not wait for (`later_jobs`): the entry after the last job, as this process may compile the
-    others by then, and in the end the functions that they rarely call, if that adds little.
+    A context manager, whose blocks are these calls. Then the other process compiles what they do
+    not wait for (`later_jobs`): the entry, and the functions that they rarely call if that adds
+    little.
     """
 
     def __init__(self, jobs: Sequence[Job], later_jobs: Sequence[Job] = ()) -> None:
@@ -296,18 +296,17 @@ class BackgroundCompilation:
         at_worst = SAFETY_FACTOR * estimate_wall_time(self._jobs)
         return (REMAINING_SECONDS.get() or self._seconds) >= at_worst
 
-    def _adds_little(self, job: Job) -> bool:
-        """Whether nearly all functions that a job compiles are compiled for the others anyway."""
-        return estimate_seconds([*self._jobs, job]) < estimate_seconds(self._jobs) + START_AFTER
+    def _is_worth_adding(self, job: Job) -> bool:
+        """Whether a job is an entry, or nearly all that it compiles is compiled for the others."""
+        added = estimate_seconds([*self._jobs, job]) - estimate_seconds(self._jobs)
+        return not job.is_bound or added < START_AFTER
 
     def _has_started_compiler(self) -> bool:
         """Start a process that compiles, unless enough of them run; whether one was started."""
         if self._only_here or (_compilers_run() and len(_compilers) >= processors() // 2):
             return False
-        *first, last = self._jobs
-        entries = [job for job in self._later_jobs if not job.is_bound]
-        rest = [job for job in self._later_jobs if job.is_bound and self._adds_little(job)]
-        self._compiler = start_compiler([*rest, *first, *entries, last])
+        later = filter(self._is_worth_adding, self._later_jobs)
+        self._compiler = start_compiler([*later, *self._jobs])
         self._only_here = self._compiler is None
         if self._compiler is not None:
             _compilers.append(self._compiler)

@@ -75,11 +75,11 @@ def evaluate_columns(
 class BoundEquations(NamedTuple):
     """The bound functions of a system, its numbers, and its sizes.
 
-    Two processes compile the functions, from the first and from the last on: one of them those of
-    the system, which have much code in common. Functions that are called at events only are
-    compiled when that pays.
+    Two processes compile the functions, from the first and from the last on. Functions that are
+    called at events only are compiled when that pays.
     """
 
+    march: BoundFunction  # the loop of steps
     slope: BoundFunction
     powers: BoundFunction  # powers of a slope at other rates; the slope where the loop needs none
     columns: BoundFunction
@@ -87,7 +87,6 @@ class BoundEquations(NamedTuple):
     switch: BoundFunction
     energies: BoundFunction
     mode_properties: BoundFunction
-    march: BoundFunction  # the loop of steps
     numbers: Vector
     coordinate_count: int
     variable_count: int
@@ -155,6 +154,7 @@ def equations_of(
         (switch_at_event, evaluate_energies, mode_properties), system, rarely_called=True
     )
     return BoundEquations(
+        march=march,
         slope=slope,
         powers=powers[0] if powers else slope,
         columns=columns,
@@ -162,7 +162,6 @@ def equations_of(
         switch=switch,
         energies=energies,
         mode_properties=properties,
-        march=march,
         numbers=numbers_in(system),
         coordinate_count=system.coordinates(),
         variable_count=system.variables(),

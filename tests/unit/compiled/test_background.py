@@ -128,11 +128,10 @@ def test_entry_and_cheap_extra_jobs_are_compiled_after_needed_ones(started, monk
     monkeypatch.setattr(
         parallel, "estimate_seconds", lambda jobs: len(set().union(*(job.calls for job in jobs)))
     )
-    slope, march, entry = Job("slope", "law"), Job("march"), Job("loop", is_bound=False)
-    inside, other = Job("law"), Job("law", "switch")
-    compilation = BackgroundCompilation([slope, march], [inside, other, entry])
-    assert not compilation.is_due(at_once=True)
-    assert started[0].jobs == [inside, slope, entry, march]  # the last job is compiled first
+    needed, inside, other = Job("march", "slope"), Job("slope"), Job("slope", "switch")
+    entry = Job("loop", is_bound=False)
+    assert not BackgroundCompilation([needed], [inside, other, entry]).is_due(at_once=True)
+    assert started[0].jobs == [inside, entry, needed]  # the last job is compiled first
 
 
 def test_run_compiles_too_after_exceeding_compilation_time(jobs, started):

@@ -110,7 +110,7 @@ def test_gaps_are_halved_only_below_the_least_scale_that_overturns():
     look, tried = runs_of(lambda scale: scale / math.pi)
     found = scan_scales(look, ROW, max_runs=1000, width=1e-4, resolution=0.02, may_slide=True)
     [flip] = found.flips()
-    below = [ends for ends in pairwise(found.runs) if 0.0 < ends[0] and ends[1] <= flip.above]
+    below = [ends for ends in pairwise(found.runs) if ends[0] > 0.0 and ends[1] <= flip.above]
     assert all(far - near <= 0.02 * far for near, far in below)
     assert {scale for scale in tried if scale > ROW[32]} == set(ROW[33:])
     assert found.resolved_up_to == ROW[32]
