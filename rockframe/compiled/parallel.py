@@ -6,7 +6,7 @@ process compiles everything while this one continues in plain Python: compiled o
 returns the same bits, and a long run returns from time to time (``rockframe.solve.integrate``), so
 that it continues as machine code once there is some. A user thus never waits longer for a compiler
 than for the run itself. When a run has taken, or is expected to take, as long as both processes
-need for the remaining jobs, this process compiles, too.
+need for the remaining jobs at worst, this process compiles, too.
 """
 
 import gc
@@ -274,8 +274,8 @@ class BackgroundCompilation:
         """Whether to load machine code now, or to compile it in this process, which then waits.
 
         This process compiles as soon as plain Python is expected to need as long as compiling
-        would. Where no such time is known, it compiles as soon as plain Python has taken as long as
-        compiling takes at worst: that is never more than twice the shortest possible time.
+        takes at worst. Where no such time is known, it compiles as soon as plain Python has taken
+        as long: that is never more than twice the shortest possible time.
         """
         if self._compiler is not None and self._compiler.poll() is None:
             return self._is_worth_compiling()
@@ -298,8 +298,8 @@ class BackgroundCompilation:
 
     def _is_worth_adding(self, job: Job) -> bool:
         """Whether a job is an entry, or nearly all that it compiles is compiled for the others."""
-        added = estimate_seconds([*self._jobs, job]) - estimate_seconds(self._jobs)
-        return not job.is_bound or added < START_AFTER
+        limit = estimate_seconds(self._jobs) + START_AFTER
+        return not job.is_bound or estimate_seconds([*self._jobs, job]) < limit
 
     def _has_started_compiler(self) -> bool:
         """Start a process that compiles, unless enough of them run; whether one was started."""

@@ -212,14 +212,14 @@ def positive_root(function: Callable[[float], float], start: float, owner: str) 
     if missing <= 0.0:
         msg = f"{owner}: the base carries the weight on it without compression"
         raise AssemblyError([msg])
-    none = AssemblyError([f"{owner}: no compression of the base carries the weight on it"])
+    unbalanced = AssemblyError([f"{owner}: no compression of the base carries the weight on it"])
     while not function(start) > 0.0:
         start *= 2.0
         if not start < deepest:
-            raise none
+            raise unbalanced
     depth = float(root_scalar(function, bracket=(0.0, start), xtol=1e-18, rtol=1e-14).root)
     if abs(function(depth)) > _LARGEST_EXCESS * missing:  # the force jumps there
-        raise none
+        raise unbalanced
     return depth
 
 

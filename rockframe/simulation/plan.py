@@ -29,6 +29,7 @@ from rockframe.results.variables.variable import TIME as OVER_TIME
 from rockframe.simulation.friction_checks import has_friction_limit
 from rockframe.simulation.run_arguments import PROVED, Certification, RunArguments
 from rockframe.solve.accuracy import Accuracy, AccuracyLevel, accuracy_of
+from rockframe.solve.bookkeeping import SAMPLE_TOLERANCE
 from rockframe.solve.integrate import STILL_INTERVAL
 from rockframe.system.assembly import Assembly
 from rockframe.system.options import Overturning, read_option
@@ -189,18 +190,22 @@ def read_continuation(dataset: xr.Dataset, system: Assembly, faults: list[str]) 
 
 def _cut_words(dataset: xr.Dataset) -> str:
     """Say that the last histories of a run were cut off; empty if they were not."""
-    (time,) = OVER_TIME
-    if time not in dataset.indexes or dataset.sizes[time] < 2:
+    (name,) = OVER_TIME
+    if name not in dataset.coords or dataset[name].attrs.get("units") != "s":
         return ""
-    if dataset[time].attrs.get("units") != "s":
+    times = np.atleast_1d(dataset[name])[-2:].tolist()
+    described: dict[str, Any] = json.loads(str(dataset.attrs.get("run_json", "{}")))
+    step = described.get("output_step")
+    spacings = [] if step is None else [_read_time("output_step", step, TIME_STEP)]
+    spacings += np.diff(times).tolist()  # longer in histories of which every nth time is kept
+    end, last = float(dataset.attrs["solver_end_time"]), max(times, default=0.0)
+    # the end may be between two output times
+    if not spacings or end - last < (1.0 - SAMPLE_TOLERANCE) * max(spacings):
         return ""
-    before, last = dataset[time].to_numpy()[-2:].tolist()
-    end = float(dataset.attrs["solver_end_time"])
-    if end - last <= 1.5 * (last - before):  # the end may be between two times
-        return ""
+    shorter = f", or simulate one with duration='{last:.10g} s'" if last > 0.0 else ""
     return (
         f"initial is a part of a run, up to {last:.10g} s; a run is continued from its end, at "
-        f"{end:.10g} s: give all of it, or simulate one with duration='{last:.10g} s'"
+        f"{end:.10g} s: give all of it{shorter}"
     )
 
 

@@ -129,16 +129,29 @@ def test_invalid_continuations_are_refused():
         system.simulate(MOTION, initial=3)
 
 
-def test_a_part_of_a_run_is_not_continued_from_the_end_of_the_whole():
+@pytest.mark.parametrize(
+    ("part", "words"),
+    [
+        (lambda whole: whole.sel(time=slice(0.0, 3.0)), "up to 3 s; .* duration='3 s'"),
+        (lambda whole: whole.sel(time=3.0, method="nearest"), "up to 3 s; .* duration='3 s'"),
+        (lambda whole: whole.isel(time=slice(None, -1)), "up to 7.98 s; .* at 7.99 s"),
+        (lambda whole: whole.isel(time=slice(None, None, 7)).isel(time=slice(-1)), "up to"),
+        (lambda whole: whole.isel(time=[0]), "up to 0 s; .* give all of it$"),
+        (lambda whole: whole.isel(time=[]), "up to 0 s; .* give all of it$"),
+    ],
+)
+def test_a_part_of_a_run_is_not_continued_from_the_end_of_the_whole(part, words):
     """A selection in time keeps the attributes of the run, and its end with them."""
+    with pytest.raises(AssemblyError, match=f"a part of a run, {words}"):
+        SCENES["pads"].simulate(MOTION, initial=part(unbroken_run("pads")), duration="0.1 s")
+
+
+def test_parts_that_reach_the_end_of_a_run_are_continued():
     system, whole = SCENES["pads"], unbroken_run("pads")
     options = {"duration": "0.1 s", "outputs": None}
-    cut = whole.sel(time=slice(0.0, 3.0))
-    with pytest.raises(AssemblyError, match=r"a part of a run, up to 3 s; .* duration='3 s'"):
-        system.simulate(MOTION, initial=cut, **options)
     expected = system.simulate(MOTION, initial=whole, **options)
     for part in (whole.sel(time=slice(3.0, None)), whole.isel(time=slice(None, None, 7)),
-                 whole.drop_dims("time")):  # fmt: skip
+                 whole.isel(time=-1), whole.drop_dims("time")):  # fmt: skip
         assert system.simulate(MOTION, initial=part, **options).end_state == expected.end_state
     rare = system.simulate(MOTION, output_step="0.7 s")
     assert rare.time[-1] < rare.solver_end_time
