@@ -22,6 +22,7 @@ from unit.certified import (
 )
 
 import rockframe as rf
+from rockframe.dynamics.events import EventKind
 from rockframe.errors import ComponentError, ModelWarning, SolverError, SolverWarning, UnitsError
 from rockframe.results.outcome import verdict_of
 from rockframe.simulation.certify.certificate import (
@@ -37,9 +38,11 @@ from rockframe.simulation.certify.perturbations import (
     divide_intervals,
     with_shorter_steps,
 )
-from rockframe.simulation.certify.run_summary import RunSummary
-from rockframe.simulation.certify.scan import NOT_TRIED, Scan, scan
+from rockframe.simulation.certify.run_summary import RunSummary, run_summary
+from rockframe.simulation.certify.scan import NOT_TRIED, Scan, Side, may_change_between, scan
+from rockframe.simulation.run import compute_response
 from rockframe.solve.accuracy import accuracy_of
+from rockframe.solve.workspace import Status
 
 
 def combinations():
@@ -391,6 +394,122 @@ def test_scan_reports_the_nearest_flip_of_both_sides(sign):
     assert found.ended.overturned
     assert found.margin <= near
     assert found.margin == pytest.approx(near, rel=2.0 * RESOLUTION)
+
+
+def standing(clearance):
+    return RunSummary(overturned=False, peak=0.1, clearances=(clearance,))
+
+
+def side_of(clearances):
+    """Return runs that stand, by the clearances at their changes."""
+    return Side(
+        1.0, {place: standing(one) for place, one in clearances.items()}, sorted(clearances)
+    )
+
+
+@pytest.mark.parametrize(
+    ("clearances", "number", "doubtful"),
+    [
+        # alone: from a to b at twice its slope it goes to zero if a + b < 2 (a - b), b < a / 3
+        ({0.0: 0.9, 1.0: 0.31}, 0, False),
+        ({0.0: 0.9, 1.0: 0.29}, 0, True),
+        ({0.0: 0.29, 1.0: 0.9}, 0, True),
+        # the slope before it counts over two lengths of its interval: 2 * 2 * 0.1 * (slope - 0.1)
+        # is less than 1.9 up to a slope of 4.85
+        ({0.0: 2.48, 0.1: 2.0, 1.1: 1.9}, 1, False),
+        ({0.0: 2.49, 0.1: 2.0, 1.1: 1.9}, 1, True),
+        # and that after it too, over no more than the interval itself
+        ({0.0: 1.9, 1.0: 2.0, 1.1: 2.48}, 0, False),
+        ({0.0: 1.9, 1.0: 2.0, 1.1: 2.49}, 0, True),
+        ({0.0: 5.0, 0.1: 5.0, 10.0: -15.0}, 0, False),
+        ({0.0: 5.0, 0.1: 5.0, 10.0: -250.0}, 0, True),
+        # the last interval before another verdict, if the slopes differ by no more than twice
+        ({0.0: 1.0, 1.0: 0.6, 2.0: 0.1}, 1, False),
+        ({0.0: 0.86, 1.0: 0.6, 2.0: 0.1}, 1, False),
+        ({0.0: 0.84, 1.0: 0.6, 2.0: 0.1}, 1, True),
+        ({0.0: 1.59, 1.0: 0.6, 2.0: 0.1}, 1, False),
+        ({0.0: 1.61, 1.0: 0.6, 2.0: 0.1}, 1, True),
+        # but not where another interval follows
+        ({0.0: 1.0, 1.0: 0.6, 2.0: 0.1, 3.0: 0.1}, 1, True),
+    ],
+)
+def test_clearances_that_may_reach_zero_are_doubtful(clearances, number, doubtful):
+    assert may_change_between(side_of(clearances), number) is doubtful
+
+
+@pytest.mark.parametrize(("beyond", "doubtful"), [(1.4, False), (0.6, True)])
+def test_the_first_interval_is_compared_with_that_of_the_other_sign(beyond, doubtful):
+    """A clearance that falls from one sign to the other is straight; a peak at zero is bent."""
+    side = side_of({0.0: 1.0, 1.0: 0.6})
+    assert may_change_between(side, 0, side_of({0.0: 1.0, 1.0: beyond})) is doubtful
+
+
+@pytest.mark.parametrize(
+    ("place", "length", "rough"),
+    [
+        (1.05, 0.1, True),
+        (1.84, 0.1, True),  # eight lengths away
+        (0.26, 0.1, True),
+        (1.86, 0.1, False),
+        (0.24, 0.1, False),
+        (1.05, 0.139, True),  # 1.4 times longer or shorter
+        (1.05, 0.141, False),
+        (1.05, 0.072, True),
+        (1.05, 0.071, False),
+    ],
+)
+def test_two_different_courses_nearby_make_an_interval_doubtful(place, length, rough):
+    side = side_of({0.0: 0.5, 1.0: 0.5, 1.1: 0.5})
+    side.rough = [(1.05, 0.1)]
+    assert not side.is_rough(1.0, 1.1)
+    side.rough.append((place, length))
+    assert side.is_rough(1.0, 1.1) is rough
+    assert may_change_between(side, 1) is rough
+
+
+def test_intervals_between_different_courses_are_kept_by_middle_and_length():
+    side = side_of({0.0: 0.5})
+    side.add(1.0, standing(0.5))
+    assert side.rough == []
+    side.add(0.4, RunSummary(overturned=False, peak=0.3, clearances=(0.5, 0.5)))
+    assert side.rough == [(0.2, 0.4), (0.7, pytest.approx(0.6))]
+
+
+def test_course_weighs_events_by_their_distance_from_six_instants():
+    """An event halfway between two instants counts half at either, one at an instant there only."""
+    trajectory = compute_response(SYSTEM.assembly, plan_of()).trajectory
+    assert not trajectory.overturned
+    events = {
+        "event_time": np.array([1.0, 3.0, 10.0]),
+        "angular_velocity_before": np.array([-2.0, 3.0, -0.5]),
+        "event_kind": np.array([EventKind.IMPACT] * 3),
+    }
+    summary = run_summary(trajectory, events, 0.3, 10.0, in_motion=False)
+    first, third = 2.0 / math.sqrt(2.0), 3.0 / math.sqrt(2.0)
+    course = (first, math.hypot(first, third), third, 0.0, 0.0, 0.5)
+    assert summary.course == pytest.approx(course, abs=1e-6)
+    assert summary.clearances == (pytest.approx(0.7),)
+    assert summary.step == trajectory.end_time / trajectory.step_count
+    # one that comes back from beyond the angle, and one that overturns
+    back = replace(trajectory, overturning_time=2.0, peak_right=math.pi / 8.0, peak_left=0.1)
+    summary = run_summary(back, events, 1.25, 10.0, in_motion=False)
+    assert summary.clearances == pytest.approx((0.25, 0.75))
+    falls = replace(back, status=Status.OVERTURNED, overturning_time=7.0)
+    events["event_kind"][1] = EventKind.OVERTURNING
+    summary = run_summary(falls, events, 1.0, 10.0, in_motion=False)
+    assert summary.clearances == pytest.approx((9.0, 3.0))
+
+
+def test_courses_are_alike_within_a_fifth_of_their_largest_rate():
+    stands = replace(standing(0.5), course=(1.0, 0.2))
+    assert stands.alike(replace(stands, course=(1.0, 0.39)))
+    assert not stands.alike(replace(stands, course=(1.0, 0.41)))
+    # and overturn in the same swing if their times differ by less than a twentieth
+    falls = RunSummary(overturned=True, peak=0.2, clearances=(1.0, 0.5), time=4.0, direction=1)
+    for time, alike in ((4.2, True), (4.22, False), (3.81, True), (3.79, False)):
+        assert falls.alike(replace(falls, time=time)) is alike
+    assert not falls.alike(replace(falls, direction=-1))
+    assert not stands.alike(replace(stands, clearances=(0.5, 0.5)))
 
 
 def test_changes_at_the_reach_are_counted_as_tried():
