@@ -36,6 +36,7 @@ from rockframe.simulation.certify.perturbations import (
     DIVISIONS,
     SHORTER,
     divide_intervals,
+    scales,
     with_shorter_steps,
 )
 from rockframe.simulation.certify.run_summary import RunSummary, run_summary
@@ -518,6 +519,33 @@ def test_changes_at_the_reach_are_counted_as_tried():
     assert found.margin == 0.2
     assert found.within(found.margin) == len(found.tried)
     assert found.within(0.1) == sum(abs(change) < 0.11 for change in found.tried)
+
+
+@pytest.mark.parametrize(
+    ("nudge", "reach", "expected"),
+    [
+        # a quarter and a half of the nudge, the nudge, steps of a quarter, at most 0.04 of the
+        # reach; the last one but the reach is left out if it is nearer than half a step
+        (0.1, 0.1175, [0.025, 0.05, 0.1, 0.1047, 0.1094, 0.1141, 0.1175]),
+        (0.1, 0.12, [0.025, 0.05, 0.1, 0.1048, 0.1096, 0.1144, 0.12]),
+        (0.2, 0.09, [0.05, 0.09]),
+        (0.5, 0.1, [0.1]),
+    ],
+)
+def test_first_changes_of_scale_grow_by_a_quarter_or_a_share_of_the_reach(nudge, reach, expected):
+    assert scales(nudge, reach) == pytest.approx(expected)
+
+
+@pytest.mark.parametrize(
+    ("step", "substeps"),
+    [
+        (0.002, 14),  # 2.7 times more steps than the run made: 0.01 / 0.002 * 2.7 = 13.5
+        (0.01, 9),  # and than it was asked for: 3 * 2.7 = 8.1
+    ],
+)
+def test_shorter_steps_are_2_7_times_as_many_as_made_or_asked_for(step, substeps):
+    finer = with_shorter_steps(rf.Accuracy(substeps=3), SYSTEM.assembly, step, 0.01)
+    assert finer.substeps == substeps
 
 
 def test_documentation_matches_certification_constants():

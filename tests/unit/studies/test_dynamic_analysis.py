@@ -16,9 +16,18 @@ from unit.studies.small_analyses import (
 )
 
 import rockframe as rf
-from rockframe.errors import ComponentError, ModelWarning, SchemaError, SolverWarning
+from rockframe.errors import ComponentError, ModelWarning, SchemaError, SolverWarning, warn
+from rockframe.results.outcome import overturns
 from rockframe.studies import line_scan as of_lines
-from rockframe.studies.line_scan import Bracket, bisect_brackets, bracket_arrays, find_brackets
+from rockframe.studies.line_scan import (
+    VERDICT_DIM,
+    Bracket,
+    LineScan,
+    LineVerdicts,
+    bisect_brackets,
+    bracket_arrays,
+    find_brackets,
+)
 from rockframe.studies.sweeps import execution
 
 
@@ -316,3 +325,69 @@ def test_brackets_split_at_a_third_verdict():
     assert np.isnan(before[0, 1]).tolist() == [False, True, True]
     nan = np.array([[[0.0, np.nan, 1.0]]])
     assert [(one.below, one.above) for one in find_brackets(scales, nan)] == [(1.0, 4.0)]
+
+
+LONG_PULSE = rf.GroundMotion.half_sine_pulse("1 m/s^2", "20 s")
+"""Overturns the block at scales little above that of its uplift, 9.80665 / 4."""
+
+
+def test_gaps_in_which_nothing_moves_do_not_count():
+    found = rf.incremental_dynamic_analysis(
+        SYSTEM, LONG_PULSE, scale=[0.5, 2.0, 2.6], limits=["overturning"], resolution=1.0, **QUIET
+    )
+    assert found.capacity_resolution.item() == pytest.approx(0.6 / 2.6)
+
+
+def scan_with(verdicts, **options):
+    """Scan one pulse with verdicts of one's own."""
+    lines = LineScan(SYSTEM, {"pulse": LONG_PULSE}, {}, {**QUIET, **options}, "scan", verdicts)
+    return lines.run_scan(np.array([2.0, 2.6]), width=0.05, resolution=0.05)
+
+
+def test_a_middle_without_a_verdict_is_tried_once(tmp_path):
+    def verdicts(runs):
+        middle = runs["scale"].round(12) == 2.3
+        return overturns(runs).where(~middle).expand_dims(VERDICT_DIM)
+
+    found = scan_with(verdicts, store=tmp_path / "runs")
+    assert found.verdicts.scales.tolist() == [2.0, pytest.approx(2.3), 2.6]
+    assert found.verdicts.resolution.item() == pytest.approx(0.6 / 2.6)
+    assert [(one.below, one.above) for one in found.brackets] == [(2.0, 2.6)]
+    folders = sorted(path.name for path in (tmp_path / "runs").iterdir())
+    assert folders == ["finer 01", "round 01", "scan"]
+
+
+def test_warnings_of_further_rounds_are_given_once():
+    def verdicts(runs):
+        if "motion" not in runs.dims:
+            warn("two hinges", ModelWarning)
+        return overturns(runs).expand_dims(VERDICT_DIM)
+
+    with pytest.warns(ModelWarning, match="^scan: in further rounds: two hinges$") as caught:
+        scan_with(verdicts)
+    assert len(caught) == 1
+
+
+def test_gaps_end_at_the_first_exceedance_and_skip_runs_without_a_verdict():
+    """Four lines over five scales: two gaps, a wider one about a missing run, and special ones."""
+    scales = np.array([1.0, 2.0, 4.0, 5.0, 10.0])
+    none = np.nan
+    verdicts = np.array(
+        [[[0, 0, 1, 0, 1], [0, none, 0, 1, 1], [1, 0, 0, 0, 0], [none] * 5, [0] * 5]], float
+    )
+    moved = np.ones(verdicts.shape[1:], dtype=bool)
+    moved[0, :2] = moved[4, :4] = False
+    lines = LineVerdicts(scales, verdicts, moved)
+    assert lines.resolution[0].tolist() == [0.5, 0.75, 1.0, 1.0, 0.5]
+    np.testing.assert_array_equal(lines.first_exceedance[0], [4.0, 5.0, 1.0, none, np.inf])
+    # of the lines' gaps above 0.3 of their upper ends: 2 to 4; 1 to 4; 5 to 10
+    assert lines.gap_midpoints(0.3) == [(0, 3.0), (1, 2.5), (4, 7.5)]
+    assert lines.gap_midpoints(0.5) == [(1, 2.5)]
+    more = lines.with_runs([(1, 3.0), (4, 4.0)], np.array([[1.0, 1.0]]), np.array([True, False]))
+    assert more.scales.tolist() == [1.0, 2.0, 3.0, 4.0, 5.0, 10.0]
+    np.testing.assert_array_equal(more.verdicts[0, 0], [0.0, 0.0, none, 1.0, 0.0, 1.0])
+    np.testing.assert_array_equal(more.verdicts[0, 1], [0.0, none, 1.0, 0.0, 1.0, 1.0])
+    np.testing.assert_array_equal(more.verdicts[0, 4], [0.0, 0.0, none, 1.0, 0.0, 0.0])
+    assert more.moved[0].tolist() == [False, False, True, True, True, True]
+    assert more.first_exceedance[0].tolist()[:2] == [4.0, 3.0]
+    assert more.resolution[0, :2].tolist() == [0.5, pytest.approx(2.0 / 3.0)]
