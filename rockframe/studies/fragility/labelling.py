@@ -273,7 +273,8 @@ def with_stripes(
         middles = 0.5 * (cuts[1:] + cuts[:-1])
     else:
         middles = every
-        cuts = np.concatenate([every, [np.inf]]) - 1e-8
+        cuts = np.concatenate([every, [np.inf]])
+    cuts = cuts - 1e-8  # an intensity at a cut belongs above it, in spite of rounding
     size = len(middles)
     count, exceeded = np.zeros((2, len(counted), size), dtype=np.int64)
     for row, (columns, verdict) in enumerate(counted):

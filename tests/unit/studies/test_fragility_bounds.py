@@ -302,6 +302,52 @@ def test_verdict_describes_quality_of_bounds():
                                     "it may be small, and there are no bounds.")  # fmt: skip
 
 
+def fragility_of_row(count):
+    """Fit single trials at intensities that grow by 5 % each, of which those above 1 exceeded."""
+    levels = np.exp(0.05 * (np.arange(count) - 20.0))
+    over = (levels > 1.0).astype(int)
+    return levels, rf.fragility(
+        {"intensity": (levels, "m/s^2"), "exceeded": over, "trials": np.ones(count, dtype=int)}
+    )
+
+
+def test_many_intensities_are_counted_in_ten_groups():
+    """41 of them at equal ratios: four in each group, and the greatest in the last one too."""
+    levels, found = fragility_of_row(41)
+    assert found.stripe_trials.values.tolist() == [4] * 9 + [5]
+    assert found.stripe_exceedances.values.tolist() == [0] * 5 + [3, 4, 4, 4, 5]
+    # from the 21st on, the middle of the trials of the sixth group, exceeded by 3 of 4
+    np.testing.assert_allclose(found.stripe_intensity, levels[2::4], rtol=1e-9)
+    lower, upper = stats.beta.ppf(0.025, 3, 2), stats.beta.ppf(0.975, 4, 1)
+    assert found.stripe_fraction_lower_bound[5].item() == pytest.approx(lower)
+    assert found.stripe_fraction_upper_bound[5].item() == pytest.approx(upper)
+    # up to thirty remain apart
+    levels, found = fragility_of_row(30)
+    np.testing.assert_allclose(found.stripe_intensity, levels, rtol=1e-9)
+    assert found.stripe_trials.values.tolist() == [1] * 30
+    assert fragility_of_row(31)[1].sizes["stripe"] == 10
+
+
+def test_capacities_are_counted_at_ten_of_them():
+    """21 brackets end at the logarithms 0 to 20; counts are made at every other one."""
+    ends, every = np.arange(21.0)[:, None], np.ones(21, dtype=bool)
+    trials = Trials(ends - 0.1, ends, every, every, np.ones(21), None)
+    [(intensities, verdicts)] = labelling._capacity_verdicts([trials])
+    logs = np.log(intensities[:, 0]).reshape(21, 10)
+    np.testing.assert_allclose(logs, np.tile(np.arange(1.0, 20.0, 2.0), (21, 1)))
+    assert verdicts.reshape(21, 10).sum(axis=0).tolist() == list(range(2, 21, 2))
+    # within a bracket, and beyond an open end, nothing is known
+    wide = Trials(ends - 2.5, ends, every, every, np.ones(21), None)
+    [(_, verdicts)] = labelling._capacity_verdicts([wide])
+    verdicts = verdicts.reshape(21, 10)
+    assert np.isnan(verdicts[:, 0]).tolist() == [k in (2, 3) for k in range(21)]
+    assert verdicts[4, 0] == 0.0
+    safe = Trials(ends, ends + 9.0, every, ~every, np.ones(21), None)
+    [(_, verdicts)] = labelling._capacity_verdicts([safe])
+    verdicts = verdicts.reshape(21, 10)
+    np.testing.assert_array_equal(verdicts[:, 1], [np.nan] * 3 + [0.0] * 18)
+
+
 def test_reshaping_varies_the_last_dimension_fastest():
     values = {"flat": np.arange(6), "deep": np.zeros((6, 4))}
     found = labelling._reshaped(values, {"width": 3, "limit_state": 2})

@@ -7,6 +7,7 @@ import xarray as xr
 import rockframe as rf
 from rockframe.errors import ComponentError, SchemaError, StudyError
 from rockframe.results.variables.runs import RunStatus
+from rockframe.studies.fragility.trials import at_scales, trials_of_capacities
 
 SYSTEM = rf.System(rf.Block(width="0.5 m", height="2 m", mass="400 kg"))
 OPTIONS = {"accuracy": "fast", "free_vibration": "3 s", "progress": False}
@@ -252,3 +253,32 @@ def test_means_of_runs_are_refused(runs) -> None:
     """The mean of two status numbers is the number of a third status."""
     with xr.set_options(keep_attrs=True), pytest.raises(SchemaError, match="means of runs"):
         rf.fragility(runs.mean("width"), "PGA")
+
+
+def test_capacities_of_an_analysis_lie_in_its_first_brackets():
+    """Lines with two brackets, one below the scan, none, and one whose largest run failed."""
+    none = np.nan
+    analysis = xr.Dataset(
+        {
+            "capacity_scale": ("motion", [2.9, 1.0, np.inf, np.inf, none]),
+            "scale_below": (("motion", "flip"), [[2.8, 6.0], [4.0, none], *[[none, none]] * 3]),
+            "scale_above": (("motion", "flip"), [[2.9, 6.1], [4.1, none], *[[none, none]] * 3]),
+        },
+        coords={"scale": [1.0, 4.0, 16.0]},
+    )
+    known = xr.DataArray(np.ones((5, 3), dtype=bool), dims=("motion", "scale"))
+    known[3, 2], known[4] = False, False
+    # a peak in proportion to the scale, and a duration that does not depend on it
+    peak = xr.DataArray([[2.0, 8.0, 32.0]] * 5, dims=("motion", "scale"))
+    found = trials_of_capacities(analysis, known, [peak, xr.DataArray([5.0] * 5, dims="motion")])
+    assert (found.left_out, found.independent) == (1, 4)
+    trials = found.trials
+    assert trials.has_lower.tolist() == [True, False, True, True]
+    assert trials.has_upper.tolist() == [True, True, False, False]
+    lower, upper = np.exp(trials.lower), np.exp(trials.upper)
+    assert lower[trials.has_lower, 0] == pytest.approx([5.6, 32.0, 8.0])
+    assert upper[trials.has_upper, 0] == pytest.approx([5.8, 2.0])
+    assert [*lower[:, 1], *upper[:, 1]] == pytest.approx([5.0] * 8)
+    squared = np.array([[3.0, 48.0]])  # a measure that grows with the square of the scale
+    scales = np.array([1.0, 4.0])
+    np.testing.assert_allclose(at_scales(squared, scales, 2.0), [12.0])
