@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+import xarray as xr
 
 import rockframe as rf
 from rockframe.errors import ComponentError
@@ -53,6 +54,37 @@ def test_members_without_a_result_are_counted():
     assert found.verdict == "4 members; 1 without a result are left out; bands of confidence 0.95"
 
 
+def test_one_result_for_each_motion_has_bounds_over_several_scales():
+    """Runs of several scales are independent if each motion has a result at one of them."""
+    runs = rf.sweep(SYSTEM, motions(4), scale=[1.0, 2.0], **OPTIONS)
+    for k in range(4):
+        fail(runs, motion=k, scale=k % 2)
+    found = rf.ensemble_statistics(runs, pooled=["scale"])
+    assert found.verdict == "4 members; 4 without a result are left out; bands of confidence 0.95"
+    assert found.cumulative_probability_lower_bound.notnull().all()
+
+
+def test_bounds_of_ten_members_agree_with_printed_tables():
+    """Kolmogorov's 0.409; the second and the ninth of ten about the median; a share of 1 in 10."""
+    found = rf.ensemble_statistics(xr.DataArray(np.arange(1.0, 11.0), dims="test", name="peak"))
+    share = np.arange(1, 11) / 10
+    np.testing.assert_allclose(found.cumulative_probability, share)
+    np.testing.assert_allclose(
+        found.simultaneous_lower_bound, np.maximum(share - 0.409, 0.0), atol=5e-4
+    )
+    np.testing.assert_allclose(
+        found.simultaneous_upper_bound, np.minimum(share + 0.409, 1.0), atol=5e-4
+    )
+    assert found.cumulative_probability_lower_bound[0].item() == pytest.approx(0.0025, abs=5e-5)
+    assert found.cumulative_probability_upper_bound[0].item() == pytest.approx(0.4450, abs=5e-5)
+    median = found.sel(quantile=0.5)
+    assert median.quantile_value_lower_bound.item() == 2.0
+    assert median.quantile_value_upper_bound.item() == 9.0
+    assert median.quantile_value.item() == 5.0
+    assert found.quantile_value_lower_bound[0].item() == -np.inf
+    assert found.quantile_value_upper_bound[-1].item() == np.inf
+
+
 def test_sample_verdict_reports_motions_and_omitted_cases():
     sample = rf.probability_of_overturning(
         SYSTEM, motions(), cases=40, spread={"scale": ("uniform", 2.0, 8.0)}, **OPTIONS
@@ -65,6 +97,12 @@ def test_sample_verdict_reports_motions_and_omitted_cases():
     found = _with_probability(bare, ["scale"], several=True, level=0.95)
     assert found.verdict_count.item() == 33
     assert "7 without a verdict are left out" in found.verdict
+    fail(bare, case=slice(None))
+    none = _with_probability(bare, ["scale"], several=True, level=0.95)
+    assert none.verdict_count.item() == 0
+    assert np.isnan(none.overturning_probability)
+    assert none.overturning_probability_lower_bound == 0.0
+    assert none.overturning_probability_upper_bound == 1.0
 
 
 @pytest.mark.long
