@@ -8,7 +8,12 @@ from scipy import stats
 
 import rockframe as rf
 from rockframe.errors import ComponentError
-from rockframe.studies.probability import Sampling, draw_sample, impose_correlation
+from rockframe.studies.probability import (
+    Sampling,
+    draw_sample,
+    impose_correlation,
+    read_correlation,
+)
 
 SYSTEM = rf.System(rf.Block(width="0.5 m", height="2 m", mass="400 kg"))
 PULSE = rf.GroundMotion.sine_pulse("3 m/s^2", "1 Hz")
@@ -19,6 +24,26 @@ SPREAD = {
 }
 PAIRS = {("width", "height"): 0.8, ("scale", "width"): -0.5}
 MATRIX = np.array([[1.0, 0.8, -0.5], [0.8, 1.0, 0.0], [-0.5, 0.0, 1.0]])
+
+
+def test_methods_of_sampling_fill_the_unit_square_as_defined():
+    """64 cases: strata of each number, and the boxes of a net, 8 by 8, that only Sobol's fill."""
+    filled = {}
+    for sampling in Sampling:
+        sample = draw_sample((None,), 64, sampling, 3)
+        assert sample.shape == (64, 2)
+        strata = [len(set(np.floor(64 * column).tolist())) == 64 for column in sample.T]
+        boxes = len({tuple(row) for row in np.floor(8 * sample).tolist()})
+        filled[sampling] = all(strata), any(strata), boxes == 64
+    assert filled[Sampling.RANDOM] == (False, False, False)
+    assert filled[Sampling.LATIN] == (True, True, False)
+    assert filled[Sampling.SOBOL] == (True, True, True)
+
+
+def test_correlation_takes_abbreviations_of_parameters():
+    names = ["width", "peak_ground_acceleration"]
+    matrix = read_correlation({("PGA", "width"): 0.3}, names, owner="test")
+    assert matrix.tolist() == [[1.0, 0.3], [0.3, 1.0]]
 
 
 @pytest.mark.parametrize("sampling", Sampling)

@@ -482,7 +482,16 @@ def test_openquake_export_writes_a_fragility_model(runs, tmp_path):
     assert model.findtext(f"{space}limitStates") == "rotation_0_3 overturning"
     assert len(model.findall(f"{space}fragilityFunction")) == 2
     function = model.find(f"{space}fragilityFunction")
-    assert function.find(f"{space}imls").get("imt") == "PGA"
+    levels = function.find(f"{space}imls")
+    assert levels.get("imt") == "PGA"
+    # no damage up to the least intensity, below which intensities must also be known
+    least, most = (float(found.peak_ground_acceleration[k]) / GRAVITY for k in (0, -1))
+    ends = [float(levels.get(name)) for name in ("minIML", "noDamageLimit", "maxIML")]
+    assert ends == pytest.approx([0.5 * least, least, most], rel=1e-9)
+    limited = rf.export.to_openquake({"block": found}, tmp_path / "l.xml", no_damage_limit=most)
+    assert f'minIML="{least:.10g}" maxIML="{most:.10g}" noDamageLimit="{most:.10g}"' in (
+        limited.read_text()
+    )
     for place, one in enumerate(function.findall(f"{space}params")):
         theta, beta = found.median_intensity[place].item() / GRAVITY, found.dispersion[place].item()
         mean, deviation = stats.lognorm.stats(beta, scale=theta)
