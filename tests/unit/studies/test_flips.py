@@ -106,6 +106,21 @@ def test_sentence_states_resolved_range_when_runs_are_exhausted():
     )
 
 
+def test_scarce_runs_halve_the_widest_gaps_first():
+    """Of 1 to 2, 2 to 3.1 and 3.1 to 4, which are 0.5, 0.35 and 0.23 of their upper ends wide."""
+    look, tried = runs_of(lambda scale: 0.01)
+    scan_scales(look, [1.0, 2.0, 3.1, 4.0], max_runs=7, width=1e-3, resolution=0.02)
+    assert tried[4:] == pytest.approx([1.5, 2.55, 1.25])
+
+
+@pytest.mark.parametrize("count", range(5))
+def test_scarce_runs_halve_intervals_nearest_to_overturning_first(count):
+    peaks = {0.0: 0.3, 1.0: 0.75, 2.0: 0.3, 3.0: 0.95, 4.0: 0.3}
+    look, tried = runs_of(lambda scale: peaks.get(scale, 0.5))
+    scan_scales(look, list(peaks), max_runs=5 + count, width=1e-3)
+    assert tried[5:] == [2.5, 3.5, 0.5, 1.5][:count]
+
+
 def test_gaps_are_halved_only_below_the_least_scale_that_overturns():
     look, tried = runs_of(lambda scale: scale / math.pi)
     found = scan_scales(look, ROW, max_runs=1000, width=1e-4, resolution=0.02, may_slide=True)
