@@ -12,7 +12,9 @@ from rockframe.simulation.certify.certificate import SAFETY
 from rockframe.simulation.certify.second_look import (
     ADDED_STEPS,
     MAX_PEAK_ERROR,
+    Look,
     doubts,
+    is_together,
     peak_error,
     second_look,
 )
@@ -169,3 +171,37 @@ def test_returning_block_is_judged_by_its_margin_beyond_the_angle(base):
     )
     assert doubts_between(base, beyond, farther) == []
     assert doubts_between(base, beyond, {**short, **STANDS})
+
+
+STANDS_AT_60 = Look(
+    overturned=False, share=0.6, impacts=20, time=math.nan, left=math.nan, direction=0,
+    frequency=1.5,
+)  # fmt: skip
+FALLS_AT_8 = Look(
+    overturned=True, share=1.0, impacts=20, time=8.0, left=12.0, direction=1, frequency=1.5
+)
+
+
+@pytest.mark.parametrize(
+    ("first", "changes", "together"),
+    [
+        # with other impacts, peaks may differ by a third of a hundredth
+        (STANDS_AT_60, {"share": 0.6019, "impacts": 99}, True),
+        (STANDS_AT_60, {"share": 0.5981, "impacts": 99}, True),
+        (STANDS_AT_60, {"share": 0.6021, "impacts": 99}, False),
+        # and energies at overturning by a tenth: 3 times 2 omega dt
+        (FALLS_AT_8, {"time": 8.0110, "impacts": 99}, True),
+        (FALLS_AT_8, {"time": 8.0112, "impacts": 99}, False),
+        # with a difference of impacts up to a twentieth only the verdict must be clear
+        (STANDS_AT_60, {"share": 0.65, "impacts": 21}, True),
+        (STANDS_AT_60, {"share": 0.65, "impacts": 19}, True),
+        (STANDS_AT_60, {"share": 0.65, "impacts": 22}, False),
+        (STANDS_AT_60, {"share": 0.75}, False),
+        (FALLS_AT_8, {"time": 8.1}, True),
+        (FALLS_AT_8, {"time": 8.12}, False),
+        (FALLS_AT_8, {"direction": -1}, False),
+        (FALLS_AT_8, {"overturned": None}, False),
+    ],
+)
+def test_runs_take_one_course_with_like_peaks_energies_or_impacts(first, changes, together):
+    assert is_together(first, replace(first, **changes)) is together

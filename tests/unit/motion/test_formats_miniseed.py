@@ -15,6 +15,7 @@ from unit.motion.format_samples import COUNT, COUNTS
 
 from rockframe.errors import RecordError, RecordWarning
 from rockframe.motion import GroundMotion
+from rockframe.records.miniseed import _rate
 
 needs_obspy = pytest.mark.skipif(
     importlib.util.find_spec("obspy") is None, reason="ObsPy is not installed"
@@ -289,3 +290,20 @@ class TestWithObspy:
         xml = station_xml().replace("COUNTS", "V")
         with pytest.raises(RecordError, match="expected counts per acceleration"):
             GroundMotion.read(write(miniseed(), "r.mseed"), response=write(xml, "given.xml"))
+
+
+@pytest.mark.parametrize(
+    ("factor", "multiplier", "rate"),
+    [
+        # the examples of the SEED manual 2.4: 330, 330.6 and one sample in a minute, and others
+        (33, 10, 330.0),
+        (330, 1, 330.0),
+        (3306, -10, 330.6),
+        (-60, 1, 1.0 / 60.0),
+        (-6, -10, 1.0 / 60.0),
+        (-10, 2, 0.2),
+        (50, 0, 50.0),
+    ],
+)
+def test_rate_follows_from_factor_and_multiplier(factor, multiplier, rate):
+    assert _rate(factor, multiplier) == pytest.approx(rate, rel=1e-12)

@@ -50,6 +50,15 @@ def test_negative_scaling_reverses_azimuth():
     assert north_east == pytest.approx((2.0 * NORTH + EAST) / np.sqrt(2.0), abs=1e-13)
 
 
+@pytest.mark.parametrize("factor", [0.5, 3.0])
+def test_positive_scaling_keeps_directions(factor):
+    own = {"azimuth": 30.0, "component": "N30E", "positive": "up"}
+    found = motion(NORTH, **own).scaled(factor).metadata
+    assert {name: found[name] for name in own} == own
+    back = motion(NORTH, **own).scaled(-factor).metadata
+    assert (back["azimuth"], back["component"], back["positive"]) == (210.0, "-N30E", "down")
+
+
 @pytest.mark.parametrize(
     ("start", "later"),
     [
