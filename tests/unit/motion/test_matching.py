@@ -81,6 +81,8 @@ def assert_matched(motion, matched, target, periods):
         stated - 0.008 < np.abs(ratios - 1.0).max() < stated + 0.004
     )  # cusps lie between the periods of both
     assert np.abs(ratios - 1.0).mean() == pytest.approx(metadata["mean_spectral_misfit"], abs=5e-4)
+    root_mean_square = np.sqrt(np.mean(np.log(ratios) ** 2))
+    assert root_mean_square == pytest.approx(metadata["spectral_misfit"], abs=5e-4)
     before = motion.scaled(metadata["scale_factor"])
     assert len(matched) == len(motion)
     build_ups = [np.cumsum(period.si.horizontal.samples**2) for period in (before, matched)]
