@@ -216,6 +216,13 @@ class TestPairs:
             motion = GroundMotion.read(path, component=("N", "Vert"))
         assert motion.si.vertical.samples.tolist() == pytest.approx(UP.tolist())
 
+    @pytest.mark.parametrize(("code", "sign"), [(400, 1.0), (401, -1.0)])
+    def test_sense_of_a_cosmos_channel_follows_from_its_code(self, write, code, sign):
+        text = cosmos_block("acceleration", VALUES["N"])
+        text += cosmos_block("acceleration", VALUES["U"], chan="  2: Vert", azimuth=code)
+        motion = GroundMotion.read(write(text, "r.V2c"), component=("N", "Vert"))
+        assert motion.si.vertical.samples.tolist() == pytest.approx((sign * UP).tolist())
+
     def test_the_shorter_of_two_is_padded(self, write):
         text = cosmos_block("acceleration", VALUES["N"])
         text += cosmos_block("acceleration", VALUES["U"][:20], chan="  2: Up", azimuth=400)

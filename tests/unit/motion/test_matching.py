@@ -9,7 +9,13 @@ from scipy import signal
 
 import rockframe as rf
 from rockframe.errors import ComponentError, RecordWarning, UnitsError
-from rockframe.motion.matching.iteration import PEAKS, unusual_changes
+from rockframe.motion.matching.iteration import (
+    PEAKS,
+    MatchingGoal,
+    matching_changes,
+    unusual_changes,
+)
+from rockframe.signals import Signal
 from rockframe.signals.integrals import ground_path
 from rockframe.signals.motion import knots_of
 
@@ -165,6 +171,19 @@ def test_matching_reports_changes_of_other_measures(quickly_matched):
             for record in (motion.scaled(metadata["scale_factor"]), matched)
         )
         assert metadata["spectral_growth_beyond_range"] == pytest.approx(after / before, rel=1e-3)
+
+
+def test_growth_is_sought_up_to_five_times_the_longest_period():
+    """A slow wave is added, to which an oscillator of its period responds most."""
+    time = np.arange(2001) * 0.01
+    before = Signal(0.01, np.sin(2.0 * np.pi * time / 0.5) * np.exp(-0.3 * time))
+    goal = MatchingGoal(np.ones_like, 0.4, 0.8, 0.05, 0.05)
+    for slow, most in ((3.6, 3.6), (8.0, 4.0)):
+        wave = 0.2 * np.sin(2.0 * np.pi * time / slow)
+        changes = matching_changes(before, Signal(0.01, before.samples + wave), goal)
+        found = changes["period_of_spectral_growth"]
+        assert found <= 4.0 * (1.0 + 1e-9)
+        assert found == pytest.approx(most, rel=0.1)
 
 
 def test_unusual_changes_reports_growth_above_50_percent():

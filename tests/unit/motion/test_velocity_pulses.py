@@ -129,6 +129,18 @@ def test_search_leaves_out_samples_finer_than_it_needs(monkeypatch):
     assert found == velocity_pulses.strongest_wavelet(velocities, 4e-4, periods)
 
 
+def test_mirrored_velocities_have_the_same_strongest_wavelet():
+    time = np.arange(2001) * STEP
+    velocities = np.stack([wavelet(time, 1.03 * 1.5, 9.0), 0.4 * wavelet(time, 1.4, 9.1)])
+    velocities += np.stack([noise(2001, 0.1, seed=1), noise(2001, 0.1, seed=2)])
+    periods = velocity_pulses.period_range(0.5, 5.0)
+    for one in (velocities, velocities[:1]):
+        found = velocity_pulses.strongest_wavelet(one, STEP, periods)
+        mirrored = velocity_pulses.strongest_wavelet(-one, STEP, periods)
+        assert mirrored == pytest.approx(found, rel=1e-12)
+        assert 0.0 <= found.direction < math.pi
+
+
 def test_pulse_and_residual_sum_to_motion_without_drift():
     # the pulse begins before the record, which drifts slightly
     time = np.arange(2001) * STEP
