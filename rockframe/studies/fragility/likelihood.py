@@ -93,10 +93,15 @@ def fit(trials: Trials, bands: Bands) -> Fit:
 
 
 def sandwich(inverse: Array, cluster_scores: Array, weight: Array) -> Array:
-    """Return the covariance from the scores of clusters, :eq:`eq-fragility-sandwich`."""
+    """Return the covariance from the scores of clusters, :eq:`eq-fragility-sandwich`.
+
+    It is NaN for a single cluster, whose scatter is not known.
+    """
     count = float(weight.sum())
+    if count <= 1.0:
+        return np.full(inverse.shape, np.nan)
     products = cluster_scores.T @ (weight[:, None] * cluster_scores)
-    return inverse @ (products * (count / (count - 1.0) if count > 1.0 else math.inf)) @ inverse
+    return inverse @ (products * (count / (count - 1.0))) @ inverse
 
 
 def cluster_sums(of_trial: Array, cluster: AnyArray) -> Array:
@@ -108,8 +113,13 @@ def cluster_sums(of_trial: Array, cluster: AnyArray) -> Array:
 
 
 def jackknife(best: Array, rows: Array, multiplicity: Array) -> Array:
-    """Return the covariance from rows without one cluster each, :eq:`eq-fragility-jackknife`."""
+    """Return the covariance from rows without one cluster each, :eq:`eq-fragility-jackknife`.
+
+    It is NaN for a single cluster, as in :func:`sandwich`.
+    """
     count = float(multiplicity.sum())
+    if count <= 1.0:
+        return np.full((best.size, best.size), np.nan)
     differences = rows - best
     return (count - 1.0) / count * (differences.T @ (multiplicity[:, None] * differences))
 

@@ -166,7 +166,8 @@ def _fit_without_motion(logs: Array, count: AnyArray, best: Array) -> Array | No
     """
     states = len(best) - 1
     kinds, kind = np.unique(count, return_inverse=True)
-    if not (kinds[0] == 0 and kinds[-1] == states):  # all runs exceed the first, or none the last
+    # no run is left, all exceed the first limit state, or none the last
+    if not kinds.size or not (kinds[0] == 0 and kinds[-1] == states):
         return None
     place = np.searchsorted(kinds, np.arange(states), side="right") - 1
     first = np.searchsorted(place, np.arange(len(kinds) - 1))

@@ -8,7 +8,15 @@ from scipy import optimize, stats
 import rockframe as rf
 from rockframe.studies.fragility import labelling
 from rockframe.studies.fragility.labelling import BoundSettings, fragility_dataset
-from rockframe.studies.fragility.likelihood import Bands, FragilityStatus, boundary, fit, gap
+from rockframe.studies.fragility.likelihood import (
+    Bands,
+    FragilityStatus,
+    boundary,
+    fit,
+    gap,
+    sandwich,
+)
+from rockframe.studies.fragility.ordered import ordered_fits
 from rockframe.studies.fragility.trials import StructureTrials, Trials
 from rockframe.studies.fragility.words import COVERAGE, bound_sentences, enough_trials
 
@@ -56,6 +64,39 @@ def test_sandwich_covariance_follows_its_definition(motions):
                 Bands.SANDWICH)  # fmt: skip
     assert found.coefficients == pytest.approx(best, rel=1e-5, abs=1e-6)
     assert found.covariance == pytest.approx(covariance, rel=1e-4, abs=1e-6)
+
+
+def test_sandwich_of_two_clusters_is_twice_that_of_known_scores():
+    """The factor n / (n - 1) is 2 for two clusters."""
+    inverse = np.diag([2.0, 3.0])
+    two = sandwich(inverse, np.array([[1.0, 0.5], [0.0, 1.0]]), np.ones(2))
+    np.testing.assert_allclose(two, 2.0 * np.array([[4.0, 3.0], [3.0, 9.0 * 1.25]]))
+
+
+@pytest.mark.parametrize("dispersion", ["each", "common"])
+@pytest.mark.parametrize("bands", ["jackknife", "sandwich"])
+def test_runs_under_one_motion_have_no_standard_errors(bands, dispersion):
+    """By the jackknife they were zero, or an error of NumPy with a common dispersion."""
+    logs, over, cluster = runs_of(np.random.default_rng(1), 40, 0.6)
+    verdicts = np.stack([over, (logs > np.log(1.5)) * over])
+    if dispersion == "common":
+        fits = ordered_fits(logs, verdicts, 0 * cluster, ("light", "heavy"), Bands(bands))
+    else:
+        trials = Trials.from_verdicts(logs[:, None], over, np.ones(len(logs)), 0 * cluster)
+        fits = [fit(trials, Bands(bands))]
+    for one in fits:
+        assert one.status is FragilityStatus.FITTED
+        assert np.isnan(one.covariance).all()
+    structure = StructureTrials(
+        Trials.from_verdicts(logs[:, None], over, np.ones(len(logs)), 0 * cluster),
+        (np.exp(logs)[:, None], over), 0, 1,
+    )  # fmt: skip
+    found = fragility_dataset(
+        [structure], {"limit_state": 1}, [MEASURE], BoundSettings(Bands(bands), 0.95), {}, fits[:1]
+    )
+    assert np.isfinite(found.median_intensity).all()
+    for name in ("log_median_error", "dispersion_error", "median_intensity_lower_bound"):
+        assert np.isnan(found[name]).all(), name
 
 
 def test_sandwich_of_counts_treats_each_trial_as_a_cluster():
