@@ -86,6 +86,29 @@ def test_scale_factors_respect_bounds():
         FIRSTS.selection_for(TARGET, 13, periods=PERIODS, bounds=None)
 
 
+def test_factors_are_from_a_quarter_to_four_by_default():
+    """Motions with 1/10, 1/3, 1, 3 and 10 times the spectrum of one that needs no factor."""
+    one = rf.GroundMotion.stochastic(6.5, "20 km", seed=4)
+    target = rf.TargetSpectrum.from_spectrum(rf.response_spectrum(one, PERIODS))
+    shares = [0.1, 1.0 / 3.0, 1.0, 3.0, 10.0]
+    suite = rf.MotionSuite({f"{share:g}": one.scaled(share) for share in shares})
+    found = suite.scaling_to(target, periods=PERIODS)
+    np.testing.assert_allclose(found.scale_factor, [4.0, 3.0, 1.0, 1.0 / 3.0, 0.25], rtol=1e-9)
+    np.testing.assert_allclose(
+        found.spectral_misfit, [np.log(2.5), 0.0, 0.0, 0.0, np.log(2.5)], atol=1e-9
+    )
+    assert found.attrs["factors_at_a_bound"] == 2
+    chosen = suite.selection_for(target, 3, periods=PERIODS)["motion"].to_numpy()
+    assert sorted(chosen.tolist()) == ["0.333333", "1", "3"]
+    # of two motions the deviation is their distance over the square root of two
+    pair = rf.MotionSuite({"weak": one.scaled(0.2), "strong": one.scaled(5.0)})
+    spread = pair.scaling_to(target, periods=PERIODS).set_standard_deviation
+    np.testing.assert_allclose(spread, np.log(1.25**2) / np.sqrt(2.0), rtol=1e-9)
+    both = rf.TargetSpectrum.from_spectrum(rf.response_spectrum(pair, PERIODS))
+    deviations = both.deviations_at(PERIODS[0])
+    np.testing.assert_allclose(deviations, np.log(25.0) / np.sqrt(2.0), rtol=1e-9)
+
+
 @pytest.mark.long
 def test_components_of_pair_share_scale_factor():
     suite = rf.read_suite(packed(download(STATIONS[:4])))
