@@ -31,6 +31,8 @@ from rockframe.suggestions import with_hints
 _OWNER: Final = "compare_intensities"
 _SIGNIFICANCE: Final = 0.05
 """p-value below which a slope of the residuals is reported as significant [1]."""
+_ROUNDING: Final = 1e-9
+"""Relative difference of two ratios up to which they are equal [1]."""
 Covariates = Mapping[str, Any]
 """Numbers of the motions by name: in order of motions, by their labels, or over ``motion``."""
 
@@ -255,8 +257,11 @@ def _residual_trend(cloud: Cloud, covariate: Array) -> tuple[float, float]:
 def _sentence(dataset: xr.Dataset) -> str:
     """Return the verdict in words: the most efficient measure, and those not sufficient."""
     ratio = dataset["efficiency_ratio"]
-    best = str(dataset["measure"][int(np.argmin(ratio.to_numpy()))].item())
-    text = f"Of {dataset.sizes['measure']} measures {best} is the most efficient, with "
+    best = f"{dataset['measure'][int(np.argmin(ratio.to_numpy()))].item()} is the most efficient"
+    # as of runs under one motion at several scales, whose measures are proportional
+    if ratio.size > 1 and ratio.max() <= ratio.min() * (1.0 + _ROUNDING):
+        best = "all are equally efficient"
+    text = f"Of {dataset.sizes['measure']} measures {best}, with "
     text += f"{float(ratio.min()):.3g} of dispersion over power"
     if "sufficiency_p_value" in dataset:
         p_value = dataset["sufficiency_p_value"]

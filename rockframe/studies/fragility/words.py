@@ -211,7 +211,8 @@ def bound_sentences(
     least, fewest = int(independent.min()), min(known)
     if least < fewest:
         which = "no bounds" if (independent < fewest).all() else "no bounds of some"
-        return [f"There are {which}: {least} {kind} are too few, {fewest} are needed."]
+        few = f"1 {kind.removesuffix('s')} is" if least == 1 else f"{least} {kind} are"
+        return [f"There are {which}: {few} too few, {fewest} are needed."]
     nominal = f"bounds of nominal {100.0 * confidence:g} % are too narrow"
     if bands is Bands.PROFILE and (independent < trials).any():
         return [f"The {nominal}: they take runs under one motion for independent."]

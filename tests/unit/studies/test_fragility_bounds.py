@@ -97,6 +97,9 @@ def test_runs_under_one_motion_have_no_standard_errors(bands, dispersion):
     assert np.isfinite(found.median_intensity).all()
     for name in ("log_median_error", "dispersion_error", "median_intensity_lower_bound"):
         assert np.isnan(found[name]).all(), name
+    ones = np.array([1])
+    (sentence,) = bound_sentences(Bands(bands), 0.95, ones, 280 * ones, kind="motions")
+    assert sentence.startswith("There are no bounds: 1 motion is too few, ")
 
 
 def test_sandwich_of_counts_treats_each_trial_as_a_cluster():

@@ -69,6 +69,16 @@ def test_measures_are_compared_as_regressions_are(runs):
     )
 
 
+def test_proportional_measures_are_equally_efficient(runs):
+    """As those of runs under one motion at several scales."""
+    double = (2.0 * runs.good).rename("double").assign_attrs(units="m")
+    found = rf.compare_intensities(runs, ["good", double])
+    assert found.verdict == (
+        f"Of 2 measures all are equally efficient, with {found.efficiency_ratio[0]:.3g} of "
+        "dispersion over power."
+    )
+
+
 def test_relative_sufficiency_is_mean_log_likelihood_difference(runs):
     found = rf.compare_intensities(runs, ["poor", "good"])
     fell = runs.status.values.ravel() == RunStatus.OVERTURNED
