@@ -260,8 +260,10 @@ def test_sweeps_differing_otherwise_do_not_join_into_a_sweep():
     worn = rf.sweep(CABINET, pulse, width=["0.4 m", "0.5 m"], restitution=[0.7], **SWEEP_OPTIONS)
     worn = worn.isel(restitution=0, drop=True)
     longer = rf.sweep(CABINET, pulse, width=["0.6 m"], **{**SWEEP_OPTIONS, "free_vibration": "1 s"})
+    stronger = {"1 Hz": rf.GroundMotion.sine_pulse("4 m/s^2", "1 Hz")}  # of the same name
+    stronger = rf.sweep(CABINET, stronger, width=["0.6 m"], **SWEEP_OPTIONS)
     others = {
-        "width": [sweep_of([0.5, 0.6]), longer],
+        "width": [sweep_of([0.5, 0.6]), longer, stronger],
         "base": [worn],
     }  # fmt: skip
     for dim, several in others.items():
