@@ -157,7 +157,7 @@ shell.run_cell("rf.Block(width='0.8 m', height='4', mass='2 t')")
 @pytest.mark.parametrize("dim", ["motion", "Block.mass"])
 def test_the_way_to_pick_a_value_is_valid_for_every_dimension(dim):
     runs = xr.Dataset({"peak": ((dim, "scale"), [[1.0, 2.0], [3.0, 4.0]])})
-    picked = eval(errors.first_along("runs", dim), {"runs": runs})  # as the user would type it
+    picked = eval(errors.first_along("runs", dim), {"runs": runs})  # noqa: S307
     assert picked["peak"].values.tolist() == [1.0, 2.0]
 
 
