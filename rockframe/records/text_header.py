@@ -34,7 +34,10 @@ _SPECTRUM: Final = re.compile(
 )
 _MATCHED: Final = re.compile(r"match|compatib|artificial|time", re.IGNORECASE)
 _WORDS: Final = re.compile(r"[^\W_]+")
-_ACCELERATION_WORD: Final = re.compile(r"acc(?:n|el|eleration)?s?|ground", re.IGNORECASE)
+_ACCELERATION_WORD: Final = re.compile(
+    r"acc(?:n|el|eleration)?s?|ground|comp(?:onent)?", re.IGNORECASE
+)
+_COMPONENT_NUMBER: Final = re.compile(r"(?:^|[\W_]+)[1-9]$")
 
 
 @dataclass(frozen=True)
@@ -255,7 +258,8 @@ def _is_other(name: str) -> bool:
 
 
 def _direction(name: str) -> Orientation:
-    plain = _BRACKETED.sub("", name).strip()
+    # "Horizontal 2" is the second, not at two degrees
+    plain = _COMPONENT_NUMBER.sub("", _BRACKETED.sub("", name).strip())
     orientation = orientation_of(plain)
     if orientation != UNKNOWN:
         return orientation

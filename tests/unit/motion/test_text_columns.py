@@ -216,6 +216,8 @@ class TestColumns:
             "UD ground acceleration (m/s2)",
             "Up Acc. (m/s2)",
             "z accel (m/s2)",
+            "acceleration up component (m/s2)",
+            "up 1 (m/s2)",
         ],
     )
     def test_direction_before_the_word_acceleration_is_recognised(self, write, name):
@@ -225,6 +227,15 @@ class TestColumns:
         assert motion.si.horizontal.samples.tolist() == VALUES.tolist()
         vertical = read(write, text, component="U")
         np.testing.assert_allclose(vertical.si.horizontal.samples, 0.5 * VALUES, atol=1e-6)
+
+    def test_a_number_of_a_component_is_no_azimuth(self, write):
+        text = table("time [s],Horizontal 1 (g),Horizontal 2 (g),Vertical (g)\n", self.COLUMNS)
+        motion = read(write, text, component="Horizontal 2")
+        assert "azimuth" not in motion.metadata
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore", RecordWarning)
+            suite = rf.read_suite(write(text, "r.txt"))
+        assert len(suite.pairs) == len(suite.verticals) == 1
 
     def test_converted_vertical_component_is_read_as_vertical(self, tmp_path):
         both = rf.GroundMotion.from_arrays(
