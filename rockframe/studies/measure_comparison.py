@@ -255,9 +255,14 @@ def _residual_trend(cloud: Cloud, covariate: Array) -> tuple[float, float]:
 def _sentence(dataset: xr.Dataset) -> str:
     """Return the verdict in words: the most efficient measure, and those not sufficient."""
     ratio = dataset["efficiency_ratio"]
-    best = str(dataset["measure"][int(np.argmin(ratio.to_numpy()))].item())
-    text = f"Of {dataset.sizes['measure']} measures {best} is the most efficient, with "
-    text += f"{float(ratio.min()):.3g} of dispersion over power"
+    text = f"Of {dataset.sizes['measure']} measures "
+    if np.isfinite(ratio).any():
+        best = str(dataset["measure"][int(np.nanargmin(ratio.to_numpy()))].item())
+        text += (
+            f"{best} is the most efficient, with {float(ratio.min()):.3g} of dispersion over power"
+        )
+    else:
+        text += "none is efficient: the response grows with none of them"
     if "sufficiency_p_value" in dataset:
         p_value = dataset["sufficiency_p_value"]
         dependent = [
