@@ -237,6 +237,11 @@ def did_you_mean(value: object, known: Iterable[str]) -> str:
     return f"; was {' or '.join(repr(words[match]) for match in near)} meant?" if near else ""
 
 
+def first_along(dataset: str, dim: str) -> str:
+    """Write how the first of the values along a dimension is picked, whatever its name is."""
+    return f"{dataset}.isel({dim}=0)" if dim.isidentifier() else f"{dataset}.isel({{{dim!r}: 0}})"
+
+
 def unexpected_argument(call: str, name: str, known: Iterable[str]) -> ArgumentError:
     """Return Python's error of an unexpected argument, and propose a similar one."""
     names = list(known)

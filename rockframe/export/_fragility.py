@@ -20,7 +20,7 @@ from rockframe.arguments import (
     checked_text,
 )
 from rockframe.constants import STANDARD_GRAVITY
-from rockframe.errors import ComponentError, SchemaError, short_repr
+from rockframe.errors import ComponentError, SchemaError, first_along, short_repr
 from rockframe.results.variables.analyses import LIMIT_STATE, FragilityStatus
 from rockframe.studies.fragility.words import in_own_units
 from rockframe.studies.intensities import MEASURE_ABBREVIATIONS, PERIOD_ATTRIBUTE
@@ -301,7 +301,7 @@ def _fitted_limit_states(
     if several_dims:
         msg = (
             f"{owner}: found fragilities of several structures, by {', '.join(several_dims)}; pick "
-            f"one, for example fragility.isel({several_dims[0]}=0)"
+            f"one, for example {first_along('fragility', several_dims[0])}"
         )
         raise ComponentError(msg)
     with_states = with_states.isel(dict.fromkeys(structures, 0))

@@ -12,7 +12,7 @@ from typing import Any, Final, TypeVar, cast
 import numpy as np
 import xarray as xr
 
-from rockframe.errors import RockframeWarning, SchemaError
+from rockframe.errors import RockframeWarning, SchemaError, first_along
 from rockframe.motion import GroundMotion
 from rockframe.shared_arguments import (
     Argument,
@@ -199,7 +199,7 @@ def checked_run(value: object, function: str) -> xr.Dataset:
             raise _mismatch_error(function, f"one whose {name!r} holds no numbers")
     more = [str(name) for name in value["relative_rotation"].dims if name != "time"]
     if more:
-        way = f"pick one, for example with dataset.isel({more[0]}=0)"
+        way = f"pick one, for example with {first_along('dataset', more[0])}"
         raise _mismatch_error(function, f"several runs over {', '.join(more)}; {way}")
     samples = np.flatnonzero(~np.isnan(value["relative_rotation"].to_numpy()))
     if not len(samples):

@@ -5,7 +5,7 @@ from typing import Any, Final
 import numpy as np
 import xarray as xr
 
-from rockframe.errors import SchemaError
+from rockframe.errors import SchemaError, first_along
 from rockframe.plot._axes import (
     COLOURS,
     GREY,
@@ -56,7 +56,7 @@ def _single_structure(dataset: xr.Dataset, variable: str, function: str, named: 
         counts = ", ".join(f"{dim} ({dataset.sizes[dim]})" for dim in several)
         msg = (
             f"rf.plot.{function}: found several structures, by {counts}; pick one, for example "
-            f"with {named}.isel({several[0]}=0)"
+            f"with {first_along(named, several[0])}"
         )
         raise SchemaError(msg)
     return dataset.squeeze(dims)

@@ -5,7 +5,7 @@ from typing import Final
 import numpy as np
 import xarray as xr
 
-from rockframe.errors import SchemaError
+from rockframe.errors import SchemaError, first_along
 from rockframe.plot._axes import (
     COLOURS,
     figure_units,
@@ -248,7 +248,8 @@ def fragility(
     if count > max_count:
         msg = (
             f"rf.plot.fragility: found {count} structures, by {', '.join(structures)}; a figure "
-            f"shows {max_count}: pick some, for example with fragility.isel({structures[0]}=0)"
+            f"shows {max_count}: pick some, for example with "
+            f"{first_along('fragility', structures[0])}"
         )
         raise SchemaError(msg)
     if len(measures) == 1 and not structures:

@@ -5,7 +5,7 @@ from typing import Any, Final, cast
 import numpy as np
 import xarray as xr
 
-from rockframe.errors import ComponentError, SchemaError, did_you_mean, short_repr
+from rockframe.errors import ComponentError, SchemaError, did_you_mean, first_along, short_repr
 from rockframe.plot._axes import (
     BLUE,
     GREY,
@@ -261,11 +261,14 @@ def _checked_values(dataset: xr.Dataset, variable: object) -> xr.DataArray:
     values = dataset[variable]
     if not 1 <= values.ndim <= _MAX_AXES:
         names = [str(dim) for dim in values.dims]
-        as_label = next((name for name in reversed(names) if name.isidentifier()), "scale")
+        way = (
+            f"choose from the others, for example with {first_along('runs', names[-1])}"
+            if names
+            else "rf.case gives a single case, to be simulated and drawn by rf.plot.response"
+        )
         msg = (
             f"rf.plot.sweep draws over one or two axes, {variable!r} has {values.ndim} "
-            f"({', '.join(names) or 'none'}); choose from the others, for example with "
-            f"runs.isel({as_label}=0)"
+            f"({', '.join(names) or 'none'}); {way}"
         )
         raise SchemaError(msg)
     if values.dtype.kind not in "fiub":

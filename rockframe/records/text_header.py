@@ -34,6 +34,10 @@ _SPECTRUM: Final = re.compile(
 )
 _MATCHED: Final = re.compile(r"match|compatib|artificial|time", re.IGNORECASE)
 _WORDS: Final = re.compile(r"[^\W_]+")
+_ACCELERATION_WORD: Final = re.compile(
+    r"acc(?:n|el|eleration)?s?|ground|comp(?:onent)?", re.IGNORECASE
+)
+_COMPONENT_NUMBER: Final = re.compile(r"(?:^|[\W_]+)[1-9]$")
 
 
 @dataclass(frozen=True)
@@ -254,12 +258,19 @@ def _is_other(name: str) -> bool:
 
 
 def _direction(name: str) -> Orientation:
-    plain = _BRACKETED.sub("", name).strip()
+    # "Horizontal 2" is the second, not at two degrees
+    plain = _COMPONENT_NUMBER.sub("", _BRACKETED.sub("", name).strip())
     orientation = orientation_of(plain)
     if orientation != UNKNOWN:
         return orientation
     words = _WORDS.findall(plain)
-    return orientation_of(words[-1]) if len(words) > 1 else UNKNOWN
+    if len(words) < 2:
+        return UNKNOWN
+    orientation = orientation_of(words[-1])
+    while orientation == UNKNOWN and len(words) > 1 and _ACCELERATION_WORD.fullmatch(words[-1]):
+        words.pop()  # "vertical acceleration" names its direction first
+        orientation = orientation_of(words[-1])
+    return orientation
 
 
 def _is_unit(name: str) -> bool:

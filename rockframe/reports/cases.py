@@ -210,7 +210,7 @@ def label_values(dataset: xr.Dataset, place: int, of: str = "status") -> dict[st
     """Return the labels of a value of a variable by its place; usually those of a case."""
     values = dataset[of]
     return {
-        dim: values[dim].to_numpy()[k].item() if dim in values.coords else k
+        dim: values[dim][k].item() if dim in values.coords else k
         for dim, k in _indices(values, place).items()
     }
 

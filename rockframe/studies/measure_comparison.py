@@ -257,12 +257,16 @@ def _residual_trend(cloud: Cloud, covariate: Array) -> tuple[float, float]:
 def _sentence(dataset: xr.Dataset) -> str:
     """Return the verdict in words: the most efficient measure, and those not sufficient."""
     ratio = dataset["efficiency_ratio"]
-    best = f"{dataset['measure'][int(np.argmin(ratio.to_numpy()))].item()} is the most efficient"
-    # as of runs under one motion at several scales, whose measures are proportional
-    if ratio.size > 1 and ratio.max() <= ratio.min() * (1.0 + _ROUNDING):
-        best = "all are equally efficient"
-    text = f"Of {dataset.sizes['measure']} measures {best}, with "
-    text += f"{float(ratio.min()):.3g} of dispersion over power"
+    text = f"Of {dataset.sizes['measure']} measures "
+    if np.isfinite(ratio).any():
+        best = int(np.nanargmin(ratio.to_numpy()))
+        words = f"{dataset['measure'][best].item()} is the most efficient"
+        # as of runs under one motion at several scales, whose measures are proportional
+        if ratio.size > 1 and bool((ratio <= ratio.min() * (1.0 + _ROUNDING)).all()):
+            words = "all are equally efficient"
+        text += f"{words}, with {float(ratio.min()):.3g} of dispersion over power"
+    else:
+        text += "none is efficient: the response grows with none of them"
     if "sufficiency_p_value" in dataset:
         p_value = dataset["sufficiency_p_value"]
         dependent = [

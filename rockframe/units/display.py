@@ -3,6 +3,7 @@
 import math
 import re
 from collections.abc import Mapping
+from contextlib import suppress
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any, Final, TypeAlias, cast
 
@@ -113,8 +114,23 @@ class DisplayUnits:
     words: Mapping[str, str] = field(default_factory=dict[str, str])  # argument of the reader
 
     def of(self, unit: str) -> DisplayUnit:
-        """Return the unit in which values in an SI unit are shown."""
-        return self.chosen.get(unit, DisplayUnit(unit, 1.0))
+        """Return the unit in which values in an SI unit, or in that of a user, are shown."""
+        return self.chosen.get(unit) or self._instead_of(unit) or DisplayUnit(unit, 1.0)
+
+    def _instead_of(self, unit: str) -> DisplayUnit | None:
+        """Return the chosen unit for values that a user has converted to another one, or None."""
+        is_shown = any(unit == shown.words for shown in self.chosen.values())
+        if is_shown or unit in (*kinds.Unit, "g"):  # the gram, or the acceleration of gravity
+            return None
+        for kind in KINDS.values():
+            shown = self.chosen.get(str(kind.unit))
+            # an energy and a moment, which pint does not tell apart
+            other = kinds.MOMENT if "J" in unit else kinds.ENERGY
+            if shown is not None and kind is not other:
+                with suppress(UnitsError):
+                    size = to_si(f"1 {unit}", kind, owner="units", name="unit")
+                    return DisplayUnit(shown.words, shown.size / size)
+        return None
 
     def chosen_unit(self, measure: Measure) -> DisplayUnit | None:
         """Return the unit that was chosen for a kind, or None."""
@@ -124,7 +140,8 @@ class DisplayUnits:
         """Return a dataset with its values and their attributes ``units`` in these units."""
         converted: dict[str, Any] = {}
         for name, values in dataset.variables.items():
-            unit = self.chosen.get(str(values.attrs.get("units")))
+            current = str(values.attrs.get("units"))
+            unit = self.chosen.get(current) or self._instead_of(current)
             if unit is not None and values.dtype.kind in "fiu":
                 attributes = {**values.attrs, "units": unit.words}
                 converted[str(name)] = (values.dims, unit.of(values.to_numpy()), attributes)

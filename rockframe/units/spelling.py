@@ -12,7 +12,11 @@ _NUMBER: Final = (
     rf"[-+]?(?:(?:{_DIGITS}(?:\.(?:{_DIGITS})?)?|\.{_DIGITS})(?:[eE][-+]?\d+)?"
     r"|nan\b|inf(?:inity)?\b)"
 )
-_NUMBER_AND_UNIT: Final = re.compile(rf"\s*(?P<number>{_NUMBER})\s*(?P<unit>.*)", re.DOTALL)
+_NUMBER_AND_UNIT: Final = re.compile(
+    # the unit 1/s is that of /s
+    rf"\s*(?P<number>{_NUMBER})\s*(?:(?<=\s)1\s*(?=/\s*[^\W\d]))?(?P<unit>.*)",
+    re.DOTALL,
+)
 
 _SPELLINGS: Final = str.maketrans("⋅\N{MULTIPLICATION SIGN}[]", "**()")
 _DOUBLE_STAR: Final = re.compile(r"\s*(?:\*\*|\^)\s*")
@@ -116,7 +120,10 @@ AMBIGUOUS: Final = (
         r"\d\s*[^\w\s,.*/^()%+-]\s*\d",
         "a number is written without separators; pint would multiply its parts",
     ),
-    (r"\d\s+[\d.]", "a number is written without spaces; pint would multiply its parts"),
+    (
+        r"\d\s+(?!1\s*/\s*[^\W\d])[\d.]",
+        "a number is written without spaces; pint would multiply its parts",
+    ),
     (
         r"\b(?:k|M|G|kilo|mega|giga)?tons?\b",
         "'ton' is the US short ton of 907 kg; the tonne is written 't'",

@@ -152,3 +152,27 @@ shell.run_cell("rf.Block(width='0.8 m', height='4', mass='2 t')")
     assert "rf.Block(width" in ran.stdout
     assert "reading.py" not in ran.stdout
     assert ran.stdout.count("Cell") + ran.stdout.count("<ipython-input") == 1
+
+
+@pytest.mark.parametrize("dim", ["motion", "Block.mass"])
+def test_the_way_to_pick_a_value_is_valid_for_every_dimension(dim):
+    runs = xr.Dataset({"peak": ((dim, "scale"), [[1.0, 2.0], [3.0, 4.0]])})
+    picked = eval(errors.first_along("runs", dim), {"runs": runs})  # noqa: S307
+    assert picked["peak"].values.tolist() == [1.0, 2.0]
+
+
+def test_messages_on_several_structures_pick_one_by_valid_code():
+    block = rf.Block(width="0.25 m", height="1 m", mass="100 kg")
+    runs = rf.sweep(
+        rf.System(block),
+        rf.GroundMotion.sine_pulse("3 m/s^2", "1 Hz"),
+        axes={"Block.height": ["0.9 m", "1 m"]},
+        scale=[1, 2],
+        width=["0.2 m", "0.3 m"],
+        progress=False,
+    )
+    found = rf.fragility(runs, "PGA", limits=[])
+    with pytest.raises(errors.ComponentError, match=r"fragility\.isel\(\{'Block\.height': 0\}\)"):
+        rf.export.to_pelicun(found, "block", demand="Peak Ground Acceleration")
+    with pytest.raises(errors.SchemaError, match=r"rf\.case gives a single case"):
+        rf.plot.sweep(runs.isel({"Block.height": 0, "scale": 0, "width": 0, "motion": 0}))

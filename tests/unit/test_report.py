@@ -412,6 +412,18 @@ def test_sweep_report_shows_forces_and_slips_in_display_units(tmp_path):
     assert "slid, by" in words
 
 
+def test_sweep_report_names_the_options_of_its_cases(tmp_path):
+    block = rf.Block(width="0.8 m", height="3.2 m", mass="5.5 t")
+    pads = rf.TwoSpringSupport(frequency_ratio=20, damping_ratio=0.1)
+    pulse = rf.GroundMotion.sine_pulse("-2 m/s^2", "2 Hz")
+    runs = rf.sweep(
+        rf.System(block, pads), pulse, restraint=["contact-state", "centre"], progress=False
+    )
+    page = Page(rf.report(runs, tmp_path / "runs.html", certify=False).read_text())
+    assert "contact-state" in page.text
+    assert "centre" in page.text
+
+
 def test_report_columns_exist_in_the_schema():
     assert {*cases.COLUMNS, *sections._DRAWN_HISTORIES} <= set(SCHEMA)
 

@@ -128,3 +128,32 @@ def test_wrong_unit_is_quoted_as_typed(unit):
     assert f"got '{unit}'" in words
     assert "m s^-2" in words
     assert "9.81" not in words  # the value of g, not the unit
+
+
+@pytest.mark.parametrize(
+    ("unit", "chosen", "factor"),
+    [
+        ("cm", "mm", 10.0),
+        ("mrad", "°", 0.18 / np.pi),
+        ("g_0", "g", 1.0),
+        ("MJ", "kJ", 1e3),
+        ("N cm", "kN m", 1e-5),
+        ("km/h", "cm s^-1", 1e2 / 3.6),
+        ("mm", "mm", 1.0),  # shown already
+        ("g", "g", 1.0),  # of gravity, not a thousandth of a kilogram
+        ("%", "%", 1.0),
+        ("min", "min", 1.0),
+    ],
+)
+def test_values_in_the_unit_of_a_user_are_shown_in_the_chosen_one(unit, chosen, factor):
+    shown = display_units(UNITS, owner="a test").of(unit)
+    assert shown.words == chosen
+    assert shown.of(1.0) == pytest.approx(factor, rel=1e-12)
+
+
+def test_converted_runs_have_tables_in_the_chosen_unit():
+    run = rf.System(BLOCK).simulate(PULSE, outputs=None)
+    turned = run.assign(peak_rotation=np.rad2deg(run.peak_rotation).assign_attrs(units="deg"))
+    heads = [rf.table(one, units={"angle": "mrad"}) for one in (run, turned)]
+    values = [table["peak_rotation [mrad]"].item() for table in heads]
+    assert values[1] == pytest.approx(values[0], rel=1e-12)

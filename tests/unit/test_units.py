@@ -269,6 +269,11 @@ def test_powers_of_the_radian_are_refused_as_angles(name, bad):
     assert f"{name} needs" in refusal(rf.InitialState, **{name: bad})
 
 
+@pytest.mark.parametrize("value", ["2 1/s", (2, "1/s"), "120 1/min", (2.0, "1 / s"), "2/s"])
+def test_units_that_begin_with_one_are_read(value):
+    assert make_pulse(frequency=value).recipe["frequency"] == "2.0 Hz"
+
+
 def test_bits_are_no_ratio_and_no_frequency():
     refusal(make_pads, frequency_ratio="20 bit")
     refusal(make_pulse, frequency="1 bit/s")
@@ -282,6 +287,9 @@ def test_bits_are_no_ratio_and_no_frequency():
         (make_block, "width", "4 5 m"),
         (rf.InitialState, "vertical_displacement", "1 000 mm"),
         (make_pulse, "amplitude", "1 2 m/s^2"),
+        (make_pulse, "frequency", "2 1/2 Hz"),
+        (make_pulse, "frequency", "2 1 Hz"),
+        (make_pulse, "frequency", "2 11/s"),
     ],
 )
 def test_blanks_inside_numbers_are_refused(maker, name, bad):

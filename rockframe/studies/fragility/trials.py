@@ -16,7 +16,7 @@ import pandas as pd
 import xarray as xr
 
 from rockframe.arguments import checked_list
-from rockframe.errors import ComponentError, SchemaError, StudyError, short_repr
+from rockframe.errors import ComponentError, SchemaError, StudyError, first_along, short_repr
 from rockframe.results.variables.studies import CASE, MOTION
 from rockframe.signals.arrays import AnyArray, Array
 from rockframe.studies.intensities import column_of_runs
@@ -104,7 +104,9 @@ def check_one_structure(
     if CASE in pooled:  # stands for all columns of its table
         names = [name for name in names if CASE not in runs[name].dims]
     if names:
-        pick = f"pick one, for example runs.isel({names[0]}=0), or " * (names[0] in runs.dims)
+        pick = f"pick one, for example {first_along('runs', names[0])}, or " * (
+            names[0] in runs.dims
+        )
         msg = (
             f"{owner}: the runs are of several structures, by {', '.join(names)}; {pick}take all "
             f"of them for one, by pooled={tuple(names)}"

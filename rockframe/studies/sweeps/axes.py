@@ -231,11 +231,13 @@ def labels_in_unit(labels: xr.DataArray, unit: str | None, *, owner: str) -> xr.
 def in_units_of_schema(dataset: xr.Dataset, *, owner: str) -> xr.Dataset:
     """Return variables in their units, if a user has converted them, for example for a figure."""
     converted = {
-        name: labels_in_unit(values, SCHEMA[str(name)].unit, owner=owner).variable
-        for name, values in dataset.data_vars.items()
-        if name in SCHEMA
+        name: labels_in_unit(dataset[name], SCHEMA[str(name)].unit, owner=owner).variable
+        for name in dataset.variables
+        if name in SCHEMA and name not in dataset.indexes
     }
-    return dataset.assign(converted)
+    # such as the places of points
+    coords = {name: converted.pop(name) for name in list(converted) if name in dataset.coords}
+    return dataset.assign(converted).assign_coords(coords)
 
 
 def faults_of_values(name: str, values: AnyArray) -> list[str]:

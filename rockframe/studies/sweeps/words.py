@@ -12,13 +12,13 @@ import xarray as xr
 from rockframe.errors import ModelWarning, SolverWarning, warn
 from rockframe.results.joining import CASE_COUNT
 from rockframe.results.outcome import MIN_REPORTED_SLIP, PEAK_SLIPS, overturned_from_status
-from rockframe.results.schema import with_variables
+from rockframe.results.schema import SCHEMA, with_variables
 from rockframe.results.variables.runs import RunStatus
 from rockframe.results.variables.studies import MESSAGE, REPEATED, VERDICT_CHANGED
 from rockframe.signals.arrays import AnyArray
 from rockframe.simulation.friction_checks import count_slides
 from rockframe.simulation.run import NONE
-from rockframe.studies.sweeps.axes import OWNER
+from rockframe.studies.sweeps.axes import OWNER, labels_in_unit
 
 SCREENING_VARIABLES: Final = (REPEATED, VERDICT_CHANGED)
 """Additional variables of the cases of a screened sweep."""
@@ -116,7 +116,8 @@ def _stored_parts(runs: xr.Dataset) -> Iterator[xr.Dataset]:
 def slips_of_cases(runs: xr.Dataset) -> AnyArray:
     """Return the largest slip of each case, over all bodies [m]."""
     most = np.full(runs["status"].shape, np.nan)
-    for slips in (runs[name] for name in PEAK_SLIPS if name in runs):
+    for name in (name for name in PEAK_SLIPS if name in runs):
+        slips = labels_in_unit(runs[name], SCHEMA[name].unit, owner=OWNER)
         other_dims = [dim for dim in slips.dims if dim not in runs["status"].dims]
         most = np.fmax(most, slips.max(other_dims).to_numpy())
     return most

@@ -1,10 +1,13 @@
 """Text of several columns, leading counts and time steps, stated steps, tables of spectra."""
 
+import warnings
+
 import numpy as np
 import pytest
 from unit.motion.motion_files import G, numbers
 
 import rockframe as rf
+from rockframe.command.main import main
 from rockframe.errors import RecordError, RecordWarning
 from rockframe.motion import GroundMotion
 
@@ -205,6 +208,46 @@ class TestColumns:
         assert read(write, text, component="acc_x").si.horizontal.samples[3] == VALUES[3]
         assert read(write, text, component="E").metadata["component"] == "HNE"
         assert read(write, text, component="U").metadata["component"] == "Acc_Z"
+
+    @pytest.mark.parametrize(
+        "name",
+        [
+            "up_acceleration [m s^-2]",
+            "UD ground acceleration (m/s2)",
+            "Up Acc. (m/s2)",
+            "z accel (m/s2)",
+            "acceleration up component (m/s2)",
+            "up 1 (m/s2)",
+        ],
+    )
+    def test_direction_before_the_word_acceleration_is_recognised(self, write, name):
+        text = table(f"time [s],acceleration [m s^-2],{name}\n", self.COLUMNS[:2])
+        motion = read(write, text)
+        assert motion.metadata["component"] == "acceleration"
+        assert motion.si.horizontal.samples.tolist() == VALUES.tolist()
+        vertical = read(write, text, component="U")
+        np.testing.assert_allclose(vertical.si.horizontal.samples, 0.5 * VALUES, atol=1e-6)
+
+    def test_a_number_of_a_component_is_no_azimuth(self, write):
+        text = table("time [s],Horizontal 1 (g),Horizontal 2 (g),Vertical (g)\n", self.COLUMNS)
+        motion = read(write, text, component="Horizontal 2")
+        assert "azimuth" not in motion.metadata
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore", RecordWarning)
+            suite = rf.read_suite(write(text, "r.txt"))
+        assert len(suite.pairs) == len(suite.verticals) == 1
+
+    def test_converted_vertical_component_is_read_as_vertical(self, tmp_path):
+        both = rf.GroundMotion.from_arrays(
+            (VALUES, "m/s^2"), "0.01 s", vertical=(0.5 * VALUES, "m/s^2"), name="both"
+        )
+        both.to_dataset().to_netcdf(tmp_path / "both.nc")
+        assert main(["convert", str(tmp_path / "both.nc"), "-o", str(tmp_path / "both.csv")]) == 0
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore", RecordWarning)
+            suite = rf.read_suite(tmp_path / "both.csv")
+        assert len(suite) == len(suite.verticals) == 1
+        assert not suite.pairs
 
     def test_columns_without_times_need_time_step(self, write):
         rows = "".join(f"{a:.7f} {b:.7f} {c:.7f}\n" for a, b, c in zip(*self.COLUMNS, strict=True))

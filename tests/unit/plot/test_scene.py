@@ -366,3 +366,12 @@ def test_state_title_shows_small_unsigned_share():
     words = rf.plot.state(small).figure.get_suptitle()
     angle, share = np.degrees(small.peak_rotation.item()), small.peak_relative_rotation.item()
     assert f"{angle:.3g}°, {100.0 * share:.3g} % of overturning" in words.replace(": -", ": ")
+
+
+def test_places_of_points_are_drawn_in_any_unit():
+    run = rf.System(BLOCK).simulate(PULSE, points={"top": ("0 m", "4 m")})
+    shown = run.assign_coords(
+        {name: (1e3 * run[name]).assign_attrs(units="mm") for name in ("point_x", "point_y")}
+    )
+    limits = [rf.plot.state(dataset).axis() for dataset in (run, shown)]
+    np.testing.assert_allclose(*limits, rtol=1e-12)

@@ -164,3 +164,14 @@ def test_several_structures_are_compared_only_on_request():
     with pytest.raises(StudyError, match="several structures, by width"):
         rf.compare_intensities(runs, ["PGA", "PGV"])
     assert rf.compare_intensities(runs, ["PGA"], pooled=["width"]).sizes["measure"] == 1
+
+
+def test_no_measure_is_efficient_if_the_response_falls_with_all(runs):
+    falling = {f"1 / {name}": (1.0 / runs[name]).rename(name) for name in ("good", "poor")}
+    inverse = runs.assign_coords(
+        {name: values.assign_attrs(units="1") for name, values in falling.items()}
+    )
+    found = rf.compare_intensities(inverse, list(falling))
+    assert found.verdict == (
+        "Of 2 measures none is efficient: the response grows with none of them."
+    )

@@ -138,3 +138,14 @@ def test_subset_of_a_fragility_has_its_own_verdict():
 def test_tradeoff_verdict_equals_the_recommendation():
     rungs = rf.tradeoff(rf.System(BLOCK), MOTIONS["strong"], accuracies=["fast"], repeats=1)
     assert rungs.verdict == rf.recommend(rungs).sentence == rungs.rockframe.verdict
+
+
+def test_verdict_states_slips_in_metres_whatever_their_unit():
+    system = rf.System(BLOCK, rf.RigidGround(friction=0.2))
+    runs = rf.sweep(system, PULSE, scale=[1.0, 2.0], free_vibration="1 s", progress=False)
+    shown = runs.assign(peak_slip=(1e3 * runs.peak_slip).assign_attrs(units="mm"))
+    part = runs.isel(scale=[1]).rockframe.verdict
+    assert "1 slid, by 0." in part
+    assert shown.isel(scale=[1]).rockframe.verdict == part
+    joined = rf.concat([shown.isel(scale=[k]) for k in (0, 1)], "scale")
+    assert joined.rockframe.verdict == runs.attrs["verdict"]
