@@ -8,8 +8,7 @@ from typing import Any, Final, cast
 import numpy as np
 
 from rockframe.identification.measured import History, MeasuredPeaks, Swings
-from rockframe.identification.prediction import Prediction
-from rockframe.identification.unknowns import Circumstance, Unknown, with_starts
+from rockframe.identification.prediction import Circumstance, Prediction, Unknown, with_starts
 from rockframe.signals.arrays import Array
 
 DIFFERENCE_STEP: Final = 1e-4

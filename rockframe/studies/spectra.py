@@ -16,13 +16,13 @@ from rockframe.results.table import head
 from rockframe.results.variables.studies import CASE, MOTION
 from rockframe.shared_arguments import with_shared_arguments
 from rockframe.simulation.system import System, check_system
+from rockframe.studies.dynamic_analysis import read_line_axes, unstack_cases
 from rockframe.studies.intensities import (
     SCALE_EXPONENTS,
     Intensity,
     map_motions,
     measure_attributes,
 )
-from rockframe.studies.line_axes import read_line_axes, unstack_cases
 from rockframe.studies.line_scan import (
     CAPACITY_DEFINITION,
     SCAN_SOURCE,

@@ -50,8 +50,8 @@ from rockframe.studies.probability import (
     read_spread,
 )
 from rockframe.studies.sweeps.arguments import SweepArguments
-from rockframe.studies.sweeps.memory import check_memory
 from rockframe.studies.sweeps.motions import MotionsLike
+from rockframe.studies.sweeps.planning import check_memory
 from rockframe.studies.sweeps.scenes import motions_of_study, scene_of
 from rockframe.system.options import PointsLike
 from rockframe.units import Condition, RatioLike, to_ratio

@@ -24,7 +24,6 @@ from rockframe.simulation.plan import run_length
 from rockframe.simulation.run import NONE, compute_response, in_motion, run_scalars
 from rockframe.simulation.soundness import STILL_MOVING
 from rockframe.solve.accuracy import LEVELS, AccuracyLevel
-from rockframe.studies.sweeps.cases_of_job import CasesOfJob
 from rockframe.studies.sweeps.lanes import (
     Failed,
     Finished,
@@ -33,7 +32,7 @@ from rockframe.studies.sweeps.lanes import (
     run_assembled_singly,
     run_assembled_together,
 )
-from rockframe.studies.sweeps.study import MIN_CASES_IN_LANES, Histories, SweepJob
+from rockframe.studies.sweeps.study import MIN_CASES_IN_LANES, CasesOfJob, Histories, SweepJob
 
 SCREEN: Final = "screen"
 """The accuracy argument of screened sweeps."""

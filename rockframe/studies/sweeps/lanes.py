@@ -38,7 +38,7 @@ from rockframe.solve.lanes.integrate import (
 )
 from rockframe.solve.trajectory import Summary
 from rockframe.solve.workspace import Status
-from rockframe.studies.sweeps.cases_of_job import CasesOfJob
+from rockframe.studies.sweeps.study import CasesOfJob
 from rockframe.system.assembly import Assembly
 
 BATCH_SIZE: Final = 512

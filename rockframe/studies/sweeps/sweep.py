@@ -21,7 +21,6 @@ from rockframe.simulation.system import System
 from rockframe.solve.accuracy import AccuracyLevel
 from rockframe.studies.sweeps.arguments import SweepArguments
 from rockframe.studies.sweeps.axes import OWNER, Chunk, chunks_of
-from rockframe.studies.sweeps.cases_of_job import CasesOfJob
 from rockframe.studies.sweeps.chunk import CaseResults
 from rockframe.studies.sweeps.claims import Claims
 from rockframe.studies.sweeps.execution import (
@@ -31,13 +30,18 @@ from rockframe.studies.sweeps.execution import (
     workers_of_executor,
 )
 from rockframe.studies.sweeps.known_cases import KnownCases
-from rockframe.studies.sweeps.labelling import sweep_dataset, sweep_labels
+from rockframe.studies.sweeps.labelling import (
+    cases_verdict,
+    mark_not_screened,
+    sweep_dataset,
+    sweep_labels,
+    warn_of_missing_results,
+)
 from rockframe.studies.sweeps.lazy_dataset import lazy_dataset
 from rockframe.studies.sweeps.motions import MotionsLike
 from rockframe.studies.sweeps.planning import plan_study
 from rockframe.studies.sweeps.store import Store, staggered
-from rockframe.studies.sweeps.study import Study, cache_study
-from rockframe.studies.sweeps.words import cases_verdict, mark_not_screened, warn_of_missing_results
+from rockframe.studies.sweeps.study import CasesOfJob, Study, cache_study
 from rockframe.suggestions import with_hints
 from rockframe.system.options import Overturning, OverturningLike, PointsLike, SweepAccuracyLike
 from rockframe.system.own_base import OwnBase
