@@ -23,7 +23,7 @@ from rockframe.studies.fragility.trials import (
     flatten_like,
     motion_numbers,
 )
-from rockframe.studies.fragility.words import POOLED_ATTRIBUTE
+from rockframe.studies.fragility.words import pooled_attribute
 from rockframe.studies.intensities import (
     PERIOD_ATTRIBUTE,
     PeriodLike,
@@ -158,7 +158,7 @@ def cloud_analysis(
         **period_attribute(runs, [intensity], period, owner=_OWNER),
         "intensity": str(measure.name),
         "response": response if label is None else f"{response} {label}",
-        **({POOLED_ATTRIBUTE: ", ".join(pooled_axes)} if pooled_axes else {}),
+        **pooled_attribute(pooled_axes),
     }
     return dataset.assign_attrs(verdict=_sentence(dataset, cloud.motions_repeat))
 
