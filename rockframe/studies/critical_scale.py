@@ -245,8 +245,7 @@ def _cautions(
 ) -> dict[str, str]:
     """Repeat the warnings of the run at the decisive scale; warn of runs without a verdict."""
     cautions: list[str] = []
-    undecided = [scale for scale, outcome in scan.runs.items() if outcome.overturned is None]
-    if undecided:
+    if undecided := scan.undecided:
         cautions.append(f"{_OWNER}: {unfinished_words(undecided)}")
         warn(cautions[0], SolverWarning)
     moving = [scale for scale, outcome in scan.runs.items() if outcome.in_motion]
@@ -256,10 +255,9 @@ def _cautions(
             f"{STILL_MOVING}"
         )
         warn(cautions[-1], SolverWarning)
-    decisive = critical
-    if math.isnan(critical) and has_friction_limit(system.assembly):
-        decisive = max(scan.runs)  # if none falls, it needs the most friction
-    if not math.isnan(decisive):
+    # if none falls, the largest scale needs the most friction
+    decisive = max(scan.runs) if math.isnan(critical) else critical
+    if decisive == critical or has_friction_limit(system.assembly):
         repeated = run(system.assembly, plan_at(decisive))
         cautions += filter(None, [str(repeated.attrs.get("cautions", ""))])
     return {"cautions": "; ".join(cautions)} if cautions else {}

@@ -24,7 +24,7 @@ from rockframe.suggestions import with_hints
 from rockframe.units import POSITIVE, Unit, check_attached_unit, to_ratio
 
 _OWNER: Final = "annual_rate"
-_RATE_COLUMNS, _PROBABILITY_COLUMNS = ("intensity", "rate"), ("intensity", "probability", "years")
+_COLUMNS: Final = ("intensity", "rate"), ("intensity", "probability", "years")
 _MAX_STEP: Final = 0.02
 """Longest part of an integral, as a logarithm of intensity; a polynomial fits well within it."""
 _GAUSS_POINTS: Final = 5
@@ -180,10 +180,8 @@ def read_hazard(value: object, measure: xr.DataArray, between: object) -> Hazard
         rates = value.to_numpy().astype(np.float64)
     elif isinstance(value, Mapping):
         table = cast("Mapping[str, Any]", value)
-        if set(table) not in (set(_RATE_COLUMNS), set(_PROBABILITY_COLUMNS)):
-            expected = " or ".join(
-                ", ".join(map(repr, names)) for names in (_RATE_COLUMNS, _PROBABILITY_COLUMNS)
-            )
+        if set(table) not in map(set, _COLUMNS):
+            expected = " or ".join(", ".join(map(repr, names)) for names in _COLUMNS)
             msg = (
                 f"{_OWNER}: a table of hazard has {expected}; found "
                 f"{', '.join(map(short_repr, table))}"
@@ -266,9 +264,10 @@ def _rate_of_state(fragility: xr.Dataset, curve: HazardCurve, measure: str) -> d
     with np.errstate(invalid="ignore"):  # a rate of zero has no shares
         cumulative = np.concatenate([[0.0], np.cumsum(parts)]) / rate
     logs = np.log(edges)
+    of_bounds = (fragility[f"exceedance_probability_{end}_bound"] for end in ("lower", "upper"))
     bounds = (
-        _rate_of_curve(fragility[f"exceedance_probability_{end}_bound"], curve)
-        for end in ("lower", "upper")
+        math.nan if np.isnan(bound).any() else float(_integrated(bound, *_subdivided(curve)).sum())
+        for bound in of_bounds
     )
     outside = (float(_contributions(fragility, end)[1].sum()) for end in curve.extrapolations())
     least, most = np.interp(np.log(_range_of_trials(fragility, measure)), logs, cumulative)
@@ -280,11 +279,7 @@ def _rate_of_state(fragility: xr.Dataset, curve: HazardCurve, measure: str) -> d
 
 
 def _range_of_trials(fragility: xr.Dataset, measure: str) -> tuple[float, float]:
-    """Return the least and the greatest intensity of trials.
-
-    The curve is drawn over the range of all structures; a stripe may be a group of intensities
-    around its own.
-    """
+    """Return the least and the greatest intensity of trials; a stripe may be a group of them."""
     along, stripes = fragility[measure].to_numpy(), fragility["stripe_intensity"].to_numpy()
     (tried,) = np.nonzero(fragility["stripe_trials"].to_numpy() > 0)
     first, last = tried[[0, -1]]
@@ -364,12 +359,6 @@ def _interpolated(curve: xr.DataArray, at: Array) -> Array:
     score = np.where(at < logs[0], eta[0] + max(slope[0], 0.0) * (at - logs[0]), score)
     score = np.where(at > logs[-1], eta[-1] + max(slope[1], 0.0) * (at - logs[-1]), score)
     return ndtr(score)
-
-
-def _rate_of_curve(probability: xr.DataArray, curve: HazardCurve) -> float:
-    if np.isnan(probability.to_numpy()).any():
-        return math.nan
-    return float(_integrated(probability, *_subdivided(curve)).sum())
 
 
 def _warn_beyond_curve(dataset: xr.Dataset, curve: HazardCurve) -> None:
