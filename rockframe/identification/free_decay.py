@@ -2,6 +2,7 @@
 
 import math
 from collections.abc import Iterator, Mapping, Sequence
+from functools import partial
 from typing import Any, Final
 
 import numpy as np
@@ -203,10 +204,8 @@ def _read_circumstances(
     if isinstance(data, MeasuredPeaks) and data.signed:
         circumstances.append(Circumstance.GAUGE_OFFSET)
     listed = checked_list(values, owner=OWNER, name="circumstances", of="names")
-    names = [
-        checked_choice(Circumstance, circumstance, owner=OWNER, name="circumstances")
-        for circumstance in listed
-    ]
+    read = partial(checked_choice, Circumstance, owner=OWNER, name="circumstances")
+    names = [read(name) for name in listed]
     for name in names:
         if name not in circumstances:
             needed = "times" if name is Circumstance.RELEASE_TIME else "their signs"
@@ -229,19 +228,17 @@ def fit_verdict(
     values: Mapping[str, Any], names: Sequence[str], confidence: float, half_width: float
 ) -> str:
     """Return the result of a fit as a sentence."""
+    fitted = zip(names, values["fitted_value"], values["standard_error"], strict=True)
     results = ", ".join(
         f"{name.replace('_', ' ')} {_with_error(value, half_width * error)}"
-        for name, value, error in zip(
-            names, values["fitted_value"], values["standard_error"], strict=True
-        )
+        for name, value, error in fitted
     )
     history = "measured_rotation" in values
     data = values["measured_rotation" if history else "measured_peak_rotation"]
     residual = degrees_text(float(values["rotation_rms_residual"]), 2)
-    begin = results[0].upper() + results[1:]
     return (
-        f"{begin} ({100.0 * confidence:g} %); residual {residual} (root mean square of "
-        f"{len(data)} {'samples' if history else 'peaks'})."
+        f"{results[0].upper()}{results[1:]} ({100.0 * confidence:g} %); residual "
+        f"{residual} (root mean square of {len(data)} {'samples' if history else 'peaks'})."
     )
 
 
@@ -254,11 +251,7 @@ def cautions_of(
     for name, value, bound in zip(names, solution.values, solution.at_bound, strict=True):
         if bound:
             yield f"{name} stands at its bound, {value:.6g}; its standard error means little there"
-    undetermined = [
-        name
-        for name, error in zip(names, uncertainty.standard_error, strict=True)
-        if math.isnan(error)
-    ]
+    undetermined = [names[k] for k in np.flatnonzero(np.isnan(uncertainty.standard_error)).tolist()]
     if undetermined:
         yield (
             f"the test does not tell {' and '.join(undetermined)}: another value, or other values "
@@ -273,9 +266,8 @@ def cautions_of(
     dependence = float(values["residual_autocorrelation"])
     noise = float(values["rotation_rms_residual"])
     chance = _CHANCE_DEVIATIONS / math.sqrt(solution.residuals.size)
-    if dependence > max(_HIGH_AUTOCORRELATION, chance) and noise > _ROUNDING_SHARE * abs(
-        float(values["initial_rotation"])
-    ):
+    rounding = _ROUNDING_SHARE * abs(float(values["initial_rotation"]))
+    if dependence > max(_HIGH_AUTOCORRELATION, chance) and noise > rounding:
         yield (
             f"each residual follows the one before, with a correlation of {dependence:.2f}: the "
             "system lacks something that the test shows, or the signal was smoothed, and the true "

@@ -208,9 +208,7 @@ class FreeMotion:
         first = node if rises else node - 1
         if first < 0 or self.time[first + 1] <= self.time[first]:
             return float(self.time[node]), float(abs(self.rotation[node]))
-        start, slope, square, cube = (
-            float(coefficient[0]) for coefficient in self._cubics(np.array([first]))
-        )
+        start, slope, square, cube = (float(of[0]) for of in self._cubics(np.array([first])))
         # root of slope + 2 square s + 3 cube s^2, in a form that is accurate for a small cube too
         discriminant = max(0.0, square * square - 3.0 * cube * slope)
         divisor = -square - math.copysign(math.sqrt(discriminant), square)

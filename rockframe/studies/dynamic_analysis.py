@@ -180,22 +180,16 @@ def incremental_dynamic_analysis(
         scales, width=width, resolution=finest, outputs=outputs, output_step=output_step
     )
     scan = line_axes.unstack(result.scan)
-    sizes = {**line_axes.sizes, MOTION: scan.sizes[MOTION]}
-    shape = (len(states), *sizes.values())
+    sizes = {"limit_state": len(states), **line_axes.sizes, MOTION: scan.sizes[MOTION]}
+    shape, over = tuple(sizes.values()), tuple(sizes)
     capacities = result.capacities(shape)
-    dataset = with_variables(
-        scan, {**capacities, **result.flips(shape)}, over=("limit_state", *sizes)
-    )
+    dataset = with_variables(scan, {**capacities, **result.flips(shape)}, over=over)
     censored = np.isinf(capacities["capacity_scale"]).sum(axis=-1)
-    dataset = with_variables(
-        dataset, {"censored_count": censored}, over=("limit_state", *line_axes.sizes)
-    )
+    dataset = with_variables(dataset, {"censored_count": censored}, over=over[:-1])
     dataset = with_variables(dataset, labels_of_states(states))
     if measure is not None:
-        dataset = dataset.assign(
-            {measure.name: intensity_of_runs(scan, measure, by_name, owner=_OWNER)}
-        )
-        dataset.attrs |= measure_attributes(measure)
+        values = intensity_of_runs(scan, measure, by_name, owner=_OWNER)
+        dataset = dataset.assign({measure.name: values}).assign_attrs(measure_attributes(measure))
     below, least = _overturned_at_least_scale(dataset), float(dataset[SCALE].min())
     if below.any():
         which = "motions" if below.ndim == 1 else "lines"
@@ -229,10 +223,8 @@ def verdict_of_analysis(dataset: xr.Dataset) -> str:
     is_complete = {"limit_state", MOTION} <= set(capacity.dims) and SCALE in dataset.dims
     if not is_complete or str(capacity["limit_state"][-1].item()) != OVERTURNING:
         return cases_verdict(dataset)
-    structures = {
-        str(dim): size for dim, size in capacity.sizes.items() if dim not in ("limit_state", MOTION)
-    }
-    return _sentence(dataset, structures)
+    lines = capacity.sizes.items()
+    return _sentence(dataset, {str(n): k for n, k in lines if n not in ("limit_state", MOTION)})
 
 
 def _sentence(dataset: xr.Dataset, structures: Mapping[str, int]) -> str:
@@ -262,10 +254,9 @@ def _sentence(dataset: xr.Dataset, structures: Mapping[str, int]) -> str:
     if missing and not interrupted:
         text += f"; {missing} of {dataset['status'].size} runs of the scan have no verdict"
     slides = dataset["would_slide"].to_numpy() if "would_slide" in dataset else np.empty(0)
-    if words := share_words(slides, runs="runs of the scan"):
-        text += f"; {words}"
-    if words := slip_words(slips_of_cases(dataset), runs="runs of the scan"):
-        text += f"; {words}"
+    for words, values in ((share_words, slides), (slip_words, slips_of_cases(dataset))):
+        shown = words(values, runs="runs of the scan")
+        text += f"; {shown}" if shown else ""
     return f"{text}{INTERRUPTED_ENDING if interrupted else '.'}"
 
 
@@ -296,9 +287,7 @@ class LineAxes:
     @property
     def labels(self) -> dict[str, xr.Variable]:
         """Their values, by their names."""
-        return {
-            axis.name: xr.Variable(axis.name, axis.values, axis.attributes()) for axis in self.axes
-        }
+        return {one.name: xr.Variable(one.name, one.values, one.attributes()) for one in self.axes}
 
     def unstack(self, runs: xr.Dataset) -> xr.Dataset:
         """Return the runs with the dimensions of the axes instead of the rows of the table."""

@@ -118,16 +118,14 @@ def overturning_map(
         counted = runs["impact_count"].clip(max=impact_count).astype(float)
         return xr.where(verdict == 0.0, _STANDING, counted).where(verdict.notnull())
 
-    lines = LineScan(
-        system, motions, {}, run, _OWNER, lambda runs: modes(runs).expand_dims(VERDICT_DIM)
-    )
+    def verdicts(runs: xr.Dataset) -> xr.DataArray:
+        return modes(runs).expand_dims(VERDICT_DIM)
+
+    lines = LineScan(system, motions, {}, run, _OWNER, verdicts)
     result = lines.run_scan(amplitudes, width=width)
     counted = modes(result.scan)
-    dataset = with_variables(
-        result.scan,
-        {"impacts_before_overturning": _nan_if_standing(counted.to_numpy())},
-        over=tuple(map(str, counted.dims)),
-    )
+    impacts_of_runs = {"impacts_before_overturning": _nan_if_standing(counted.to_numpy())}
+    dataset = with_variables(result.scan, impacts_of_runs, over=tuple(map(str, counted.dims)))
     below, above, before, after = result.arrays((len(motions),))
     of_frequencies = {
         "boundary_count": np.isfinite(below).sum(axis=1),

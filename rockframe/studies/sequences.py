@@ -19,7 +19,7 @@ from rockframe.results.schema import with_variables
 from rockframe.results.variables.studies import MESSAGE, MOTION
 from rockframe.shared_arguments import with_shared_arguments
 from rockframe.signals import Motion, Signal
-from rockframe.signals.arrays import AnyArray, Array
+from rockframe.signals.arrays import AnyArray
 from rockframe.signals.motion import COEFFICIENTS
 from rockframe.simulation.certify.perturbations import divide_intervals
 from rockframe.simulation.run import NONE
@@ -108,9 +108,7 @@ def earthquake_sequences(
     labels = {
         "sequence": np.array(list(joined), dtype=object),
         EARTHQUAKE: np.arange(1, longest + 1),
-        "overturning_earthquake": np.where(
-            overturned.any(axis=1), overturned.argmax(axis=1) + 1, 0
-        ),
+        "overturning_earthquake": overturned.any(axis=1) * (overturned.argmax(axis=1) + 1),
         "pause": np.array([_actual_pause(sequence[0], pause_time) for sequence in named.values()]),
     }
     dataset = with_variables(arranged, labels)
@@ -179,17 +177,16 @@ def _join(first: GroundMotion, second: GroundMotion | None, pause_time: float) -
     if second is None and pause_time == 0.0:
         return first
     still = _pause_steps(first, pause_time)
-    motions = [motion for motion in (first, second) if motion is not None]
+    motions = [first] if second is None else [first, second]
     horizontal = _concatenate([motion.si.horizontal for motion in motions], still)
     vertical = None
     if any(motion.si.vertical is not None for motion in motions):
-        vertical = _concatenate(
-            [motion.si.vertical or _zero_vertical(motion.si.horizontal) for motion in motions],
-            still,
+        components = (
+            motion.si.vertical or _zero_vertical(motion.si.horizontal) for motion in motions
         )
-    return GroundMotion(
-        Motion(horizontal, vertical), name=", then ".join(motion.name for motion in motions)
-    )
+        vertical = _concatenate([*components], still)
+    name = ", then ".join(motion.name for motion in motions)
+    return GroundMotion(Motion(horizontal, vertical), name=name)
 
 
 def _pause_steps(motion: GroundMotion, pause_time: float) -> int:
@@ -213,13 +210,9 @@ def _concatenate(signals: Sequence[Signal], still: int) -> Signal:
     """Put intervals of still ground after a signal, and then another one, if there is one."""
     first, *later = signals
     samples = [first.samples, np.zeros(still - len(later)), *(signal.samples for signal in later)]
-    pieces = [_padded(first.pieces), np.zeros((still, COEFFICIENTS))]
-    pieces += [_padded(signal.pieces) for signal in later]
+    every = [first.pieces, np.zeros((still, COEFFICIENTS)), *(signal.pieces for signal in later)]
+    pieces = [np.pad(of, ((0, 0), (0, COEFFICIENTS - of.shape[1]))) for of in every]
     return Signal(first.time_step, np.concatenate(samples), np.concatenate(pieces), first.name)
-
-
-def _padded(pieces: Array) -> Array:
-    return np.pad(pieces, ((0, 0), (0, COEFFICIENTS - pieces.shape[1])))
 
 
 def _unstack_sequences(runs: xr.Dataset, exists: AnyArray) -> xr.Dataset:
@@ -229,9 +222,7 @@ def _unstack_sequences(runs: xr.Dataset, exists: AnyArray) -> xr.Dataset:
     for name, variable in runs.data_vars.items():
         if variable.dims != (MOTION,):
             continue
-        values = (
-            np.full(exists.shape, np.nan) if gaps else np.empty(exists.shape, dtype=variable.dtype)
-        )
+        values = np.full(exists.shape, np.nan) if gaps else np.empty(exists.shape, variable.dtype)
         values[exists] = variable.to_numpy()
         attributes = dict(variable.attrs)
         if gaps and "flag_values" in attributes:

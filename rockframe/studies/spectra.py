@@ -65,10 +65,8 @@ class BlockSizes:
         scene = scene_of(self.system)
         arguments = signature(overturning_spectrum).parameters
         # a wall has a height, too
-        other_parts = [
-            part for part in self.system.parts.structural() if not isinstance(part, Block)
-        ]
-        shared = {name for part in other_parts for name in part.varied()}
+        parts = self.system.parts.structural()
+        shared = {name for part in parts if not isinstance(part, Block) for name in part.varied()}
         sizes = {
             f"Block.{name}" if name in shared else name: (values, str(LENGTH.unit))
             for name, values in (("width", width), ("height", height))
@@ -80,10 +78,9 @@ class BlockSizes:
         self.columns = other_axes.columns(sizes)
         self._sizes = {"slenderness": len(slenderness), "rocking_period": len(periods)}
         self._sizes |= other_axes.sizes
-        labels = build_dataset({"slenderness": slenderness, "rocking_period": periods}, {})
-        self._labels = {
-            str(name): labels[name].variable for name in labels.coords
-        } | other_axes.labels
+        labels = build_dataset({"slenderness": slenderness, "rocking_period": periods}, {}).coords
+        own = {str(name): values.variable for name, values in labels.items()}
+        self._labels = own | other_axes.labels
 
     def unstack(self, runs: xr.Dataset) -> xr.Dataset:
         """Return the runs with the dimensions of the sizes instead of the rows of the table."""
@@ -91,10 +88,7 @@ class BlockSizes:
 
 
 def _with_shape_factor(system: System, owner: str) -> System:
-    """Return a system whose block keeps its shape factor where width and height change.
-
-    An inertia and a height of the centre of mass that were given would not change with them.
-    """
+    """Return a system whose block keeps its shape factor where width and height change."""
     block, fault = system.parts.block, ""
     if type(block) is not Block:
         fault = f"a {type(block or next(iter(system.parts.structural()))).__name__}"
@@ -108,7 +102,7 @@ def _with_shape_factor(system: System, owner: str) -> System:
         msg = f"{owner}: system needs a block of width and height on its base, got {fault}"
         raise ComponentError(msg)
     if block.given.inertia is None and block.given.centre_height is None:
-        return system
+        return system  # otherwise these would not change with width and height
     with collected_warnings():  # block and system already gave their warnings when they were made
         scaling = block.replace(shape_factor=block.shape_factor, centre_height=None)
         other_parts = [part for part in system.parts.structural() if part is not block]

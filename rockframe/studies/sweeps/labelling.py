@@ -196,11 +196,10 @@ def cases_verdict(dataset: xr.Dataset) -> str:
     if total is None or "status" not in dataset:
         return text
     status = dataset["status"]
-    count = status.size
-    if status.dtype.kind not in "iu":
-        if MESSAGE not in dataset or dataset[MESSAGE].dims != status.dims:  # such as a mean
-            return text
-        count = int(status.notnull().sum())  # `where` and `reindex` leave gaps
+    whole = status.dtype.kind in "iu"  # `where` and `reindex` leave gaps
+    if not whole and (MESSAGE not in dataset or dataset[MESSAGE].dims != status.dims):
+        return text  # such as of a mean
+    count = status.size if whole else int(status.notnull().sum())
     if count == total:  # a lazily read dataset has no verdict before
         return text or whole_verdict(dataset)
     some = f"{count} of the {total} cases of the sweep"
@@ -234,10 +233,8 @@ def cases_sentence(runs: xr.Dataset, subject: str) -> str:
     if counts["not run"]:
         text += f"; {counts['not run']} have not been run"
     if counts["screened"]:
-        again = (
-            f"{counts[REPEATED]} near a change of the verdict were run again with adaptive steps"
-        )
-        text += f"; {again}, which changed {counts[VERDICT_CHANGED]}"
+        text += f"; {counts[REPEATED]} near a change of the verdict were run again with adaptive "
+        text += f"steps, which changed {counts[VERDICT_CHANGED]}"
     return f"{text}."
 
 
@@ -308,7 +305,9 @@ def warn_of_missing_results(dataset: xr.Dataset, histories: Iterable[str]) -> No
         (~missing & (message != NONE), ModelWarning, "have a result to be careful with"),
     ):
         if which.any():
-            text, number = _most_frequent(message[which].tolist())
+            texts = Counter[str](message[which].tolist())
+            several = max(_alike(texts), key=lambda alike: sum(texts[one] for one in alike))
+            text, number = _text_with_ranges(several), sum(texts[one] for one in several)
             reason = "" if text == NONE else f"; message of {number} of them: {text}"
             count = f"{int(which.sum())} of {len(status)} cases"
             warn(f"{OWNER}: {count} {words} (status, message){reason}", kind)
@@ -318,39 +317,30 @@ def warn_of_missing_results(dataset: xr.Dataset, histories: Iterable[str]) -> No
         warn(f"{OWNER}: outputs names {named}, which no scene of the cases has", ModelWarning)
 
 
-def _most_frequent(texts: Sequence[str]) -> tuple[str, int]:
-    """Return the most frequent text and its count; texts that differ only in numbers are one."""
-    alike: dict[tuple[str, ...], Counter[str]] = {}
-    for text, count in Counter(texts).items():
-        alike.setdefault(tuple(_NUMBER.split(text)), Counter())[text] = count
-    words, counts = max(alike.items(), key=lambda item: item[1].total())
-    return _text_with_ranges(words, counts), counts.total()
+def _alike(texts: Iterable[str]) -> Iterable[list[str]]:
+    """Group texts that differ only in their numbers."""
+    alike: dict[tuple[str, ...], list[str]] = {}
+    for text in texts:
+        alike.setdefault(tuple(_NUMBER.split(text)), []).append(text)
+    return alike.values()
 
 
 def merge_similar_texts(
     texts: Sequence[str], message: AnyArray
 ) -> tuple[tuple[str, ...], AnyArray]:
     """Report texts that differ only in their numbers as one, if there are more than a few."""
-    alike: dict[tuple[str, ...], list[int]] = {}
-    for place, text in enumerate(texts):
-        alike.setdefault(tuple(_NUMBER.split(text)), []).append(place)
+    one_for: dict[str, str] = {}
+    for several in _alike(texts):
+        if len(several) > MAX_SIMILAR_TEXTS:
+            one_for |= dict.fromkeys(several, _text_with_ranges(several))
     merged: dict[str, int] = {}
-    places = np.empty(len(texts), dtype=message.dtype)
-    one_for = {
-        place: _text_with_ranges(words, [texts[k] for k in several])
-        for words, several in alike.items()
-        if len(several) > MAX_SIMILAR_TEXTS
-        for place in several
-    }
-    for place, text in enumerate(texts):
-        places[place] = merged.setdefault(one_for.get(place, text), len(merged))
-    return tuple(merged), places[message]
+    places = [merged.setdefault(one_for.get(text, text), len(merged)) for text in texts]
+    return tuple(merged), np.array(places, dtype=message.dtype)[message]
 
 
-def _text_with_ranges(words: Sequence[str], texts: Iterable[str]) -> str:
-    columns: Any = zip(*(_NUMBER.findall(text) for text in texts), strict=True)
+def _text_with_ranges(alike: Sequence[str]) -> str:
+    words = _NUMBER.split(alike[0])
+    columns: Any = zip(*(_NUMBER.findall(text) for text in alike), strict=True)
     ranges = [sorted(set(column), key=float) for column in columns]
-    spans = [
-        numbers[0] if len(numbers) == 1 else f"{numbers[0]} to {numbers[-1]}" for numbers in ranges
-    ]
+    spans = [of[0] if len(of) == 1 else f"{of[0]} to {of[-1]}" for of in ranges]
     return words[0] + "".join(map("".join, zip(spans, words[1:], strict=True)))

@@ -9,6 +9,7 @@ import re
 from collections.abc import Callable, Iterable, Mapping
 from contextlib import suppress
 from dataclasses import replace
+from functools import partial
 from pathlib import Path
 from typing import Any, Final, TypeVar, cast
 
@@ -69,10 +70,9 @@ def kept_histories(
     if not arguments.histories:
         return None
     named = [str(name) for name in outputs_as_list(outputs)]
-    names = tuple(
-        dict.fromkeys(variable for name in named for variable in GROUPS.get(name, (name,)))
-    )
-    wrong = [name for name in names if SCHEMA[name].dims not in (TIME, requests.POINT_TIME)]
+    every = (variable for name in named for variable in GROUPS.get(name, (name,)))
+    names = tuple(dict.fromkeys(every))
+    wrong = [name for name in names if SCHEMA[name].dims not in (TIME, POINT_TIME)]
     if wrong:
         msg = f"outputs: {', '.join(wrong)} are no histories, which a sweep could keep"
         raise StudyError(msg)
@@ -103,9 +103,9 @@ _RESERVED_NAMES: Final = {
 } | {
     row.name
     for table in (
-        runs.HISTORIES, runs.ENERGY_HISTORIES, runs.EVENTS_AND_SCALARS, requests.ACCELERATIONS,
-        requests.REACTIONS, requests.OTHERS, requests.FORCE_SCALARS, requests.POINTS,
-        requests.POINT_PEAKS, requests.SLIPS, bodies.BODIES, bodies.RESTRAINERS,
+        HISTORIES, runs.ENERGY_HISTORIES, EVENTS_AND_SCALARS, requests.ACCELERATIONS,
+        requests.REACTIONS, requests.OTHERS, FORCE_SCALARS, POINTS,
+        POINT_PEAKS, requests.SLIPS, bodies.BODIES, bodies.RESTRAINERS,
         bodies.RESTRAINER_SCALARS, SWEEP,
     )
     for row in table
@@ -163,13 +163,12 @@ def plan_study(
     none: dict[str, GroundMotion | None] = {nothing: None}
     named = {**faults.attempt(lambda: motions_of_study(motions, swept) or none, none)}
     grid = _read_grid(swept, axes, cases, list(named), faults)
-    if isinstance(swept, SystemScene):
-        swept = swept.with_parts_of([*grid.columns, *grid.axes])
-    seconds = faults.attempt(lambda: _read_period(period, [*grid.columns, *grid.axes]), None)
+    every = [*grid.columns, *grid.axes]
+    swept = swept.with_parts_of(every) if isinstance(swept, SystemScene) else swept
+    seconds = faults.attempt(lambda: _read_period(period, every), None)
     if arguments is None or faults.found:
         raise StudyError(*faults.found)
-    screening_skipped = screened and not _is_screening_cheaper(swept, named.values())
-    if screening_skipped:
+    if screening_skipped := screened and not _is_screening_cheaper(swept, named.values()):
         screened, requested["accuracy"] = False, REPEATED_LEVEL
         arguments = read_arguments(faults.found, **requested)
     if not 0 < grid.count <= MAX_CASES:
@@ -181,11 +180,8 @@ def plan_study(
     if histories is not None and len({*map(default_output_step, named.values())}) > 1:
         arguments = replace(arguments, output_step=histories.step)  # at the times that are kept
     numbers = numbers_per_case(arguments, histories, screened=screened)
-    advice = (
-        LAZY_ADVICE
-        if stored
-        else memory_remedies(arguments, histories, may_be_kept=stored is False)
-    )
+    remedies = memory_remedies(arguments, histories, may_be_kept=stored is False)
+    advice = LAZY_ADVICE if stored else remedies
     too_large = check_memory(numbers, grid.count, advice, owner=OWNER)
     if stored and not faults.found:
         for text in too_large:
@@ -207,13 +203,9 @@ def _read_grid(
     of_case: AnyArray | None = None
     table = faults.attempt(lambda: _read_table(cases), {})
     if MOTION in table:
+        number_of = partial(motion_number, names=motions, owner="cases")
         column = np.asarray(table.pop(MOTION)).tolist()
-        of_case = faults.attempt(
-            lambda: np.array(
-                [motion_number(label, motions, owner="cases") for label in column], np.intp
-            ),
-            None,
-        )
+        of_case = faults.attempt(lambda: np.array([*map(number_of, column)], np.intp), None)
     rows = _read_axes(scene, table, faults, repeats=True)
     grid_axes = _read_axes(scene, axes, faults, repeats=False)
     faults.found += _duplicate_faults(rows, grid_axes)
@@ -227,14 +219,11 @@ def _read_grid(
 
 
 def _is_screening_cheaper(scene: SweptScene, motions: Iterable[GroundMotion | None]) -> bool:
-    """Say whether two runs by fixed steps cost less than one by tolerance, as far as is known.
-
-    On rigid ground there are no more steps by tolerance. Under pulses in closed form there are
-    few of either kind, so that a second run costs what surrounds the steps; those of several
-    bodies are dear enough.
-    """
+    """Say whether two runs by fixed steps cost less than one by tolerance, as far as is known."""
     if not isinstance(scene, SystemScene):
         return True
+    # on rigid ground there are no more steps by tolerance; under pulses in closed form there are
+    # few of either kind, and a second run costs what surrounds them, unless bodies are several
     setting = scene.assembly.setting
     sampled = any(motion is None or motion.recipe is None for motion in motions)
     return setting.steps_cost_most and (sampled or not isinstance(setting, SingleBodySetting))
@@ -270,16 +259,14 @@ def _read_axes(
     """Read axes, or columns; note what is wrong."""
     axes: list[Axis] = []
     for name, values in arguments.items():
-        fault = _name_fault(name)
-        if fault:
+        if (fault := _name_fault(name)) is not None:
             faults.found.append(fault)
             continue
-        axis = faults.attempt(lambda name=name, values=values: scene.axis(name, values), None)
-        if axis is None:
-            continue
-        axes.append(axis)
-        if not repeats or not len(axis.values):
-            faults.found += faults_of_values(name, axis.values)
+        axis = faults.attempt(partial(scene.axis, name, values), None)
+        if axis is not None:
+            axes.append(axis)
+            if not repeats or not len(axis.values):
+                faults.found += faults_of_values(name, axis.values)
     return axes
 
 
@@ -296,8 +283,7 @@ def _name_fault(name: object) -> str | None:
 
 def _duplicate_faults(rows: Iterable[Axis], axes: Iterable[Axis]) -> list[str]:
     """Tell what is both a column and an axis, and motions that are scaled in two ways."""
-    columns = [axis.name for axis in rows]
-    along = [axis.name for axis in axes]
+    columns, along = ([axis.name for axis in some] for some in (rows, axes))
     both = [name for name in along if name in columns]
     faults = [f"{name!r} is both an axis and a column of cases" for name in both]
     faults += [
@@ -313,18 +299,15 @@ def _duplicate_faults(rows: Iterable[Axis], axes: Iterable[Axis]) -> list[str]:
 
 
 def _read_period(value: QuantityLike | None, axes: Iterable[Axis]) -> float | None:
-    needed = any(
-        axis.changes is Changes.MOTION and axis.name == SPECTRAL_ACCELERATION for axis in axes
-    )
-    if needed != (value is not None):
-        msg = (
-            f"{SPECTRAL_ACCELERATION} needs the period of its oscillator, such as period='0.5 s'"
-            if needed
-            else f"period is that of {SPECTRAL_ACCELERATION}, which is no axis"
-        )
+    needed = (Changes.MOTION, SPECTRAL_ACCELERATION) in ((one.changes, one.name) for one in axes)
+    if value is None and needed:
+        msg = f"{SPECTRAL_ACCELERATION} needs the period of its oscillator, such as period='0.5 s'"
         raise StudyError(msg)
     if value is None:
         return None
+    if not needed:
+        msg = f"period is that of {SPECTRAL_ACCELERATION}, which is no axis"
+        raise StudyError(msg)
     return to_si(value, PERIOD, owner=OWNER, name="period", condition=POSITIVE)
 
 
@@ -406,13 +389,11 @@ def numbers_per_case(
     if points:
         numbers[f"peaks at {points} points"] = float(len(POINT_PEAKS) * points)
     if histories is not None:
-        names = histories.names or [
-            row.name for row in (*HISTORIES, *POINTS) if TIME[0] in row.dims
-        ]
+        every = [row.name for row in (*HISTORIES, *POINTS) if TIME[0] in row.dims]
+        names = histories.names or every
         several = sum(points if SCHEMA[name].dims == POINT_TIME else 1 for name in names)
-        numbers[f"{several} histories of {histories.count} times"] = float(
-            several * histories.count
-        )
+        what = f"{several} histories of {histories.count} times"
+        numbers[what] = float(several * histories.count)
     return numbers
 
 

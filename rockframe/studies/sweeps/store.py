@@ -252,11 +252,7 @@ class Store:
             raise StudyError(msg)
         status, message = (arrays.pop(name) for name in _CHUNK_ARRAYS)
         scalars, histories = (
-            {
-                name.removeprefix(kind): values
-                for name, values in arrays.items()
-                if name.startswith(kind)
-            }
+            {n.removeprefix(kind): values for n, values in arrays.items() if n.startswith(kind)}
             for kind in (_SCALAR, _HISTORY)
         )
         return CaseResults(status, scalars, histories, message, tuple(texts))
@@ -290,11 +286,10 @@ class Store:
         )
         names = tuple(name for name, _ in described["motions"])
         grid = Grid(axes, columns, len(names), arrays.get(_COLUMN))
-        of_histories = described["histories"]
         histories = None
-        if of_histories is not None:
-            which = None if of_histories["names"] is None else tuple(of_histories["names"])
-            histories = Histories(which, of_histories["step"], of_histories["count"])
+        if (kept := described["histories"]) is not None:
+            which = None if kept["names"] is None else tuple(kept["names"])
+            histories = Histories(which, kept["step"], kept["count"])
         points = tuple(BodyPoint(**point) for point in described["points"])
         return SweepLabels(grid, names, histories, points, described["attributes"])
 
@@ -378,10 +373,8 @@ def _word_values(axis: Axis) -> list[str] | None:
 
 
 def _sampled_components(description: Mapping[str, Any] | None) -> dict[str, dict[str, Any]]:
-    """Return the components that a motion is described by, where it is described by samples.
-
-    What a constructor makes is described by its arguments, and ``vertical`` may be one of them.
-    """
+    """Return the components that a motion is described by, where it is described by samples."""
+    # what a constructor makes is described by its arguments, and ``vertical`` may be one of them
     if description is None or description["constructor"] is not None:
         return {}
     return {component: description[component] for component in _SAMPLED if description[component]}
@@ -403,9 +396,8 @@ def _read_head(path: Path) -> dict[str, Any]:
         msg = f"{file}: damaged: {problem}"
         raise StudyError(msg) from problem
     if form not in (FORMAT, FOLDER_FORMAT):
-        why = "which this version cannot read"
-        if form in _OBSOLETE_FORMATS:
-            why = "which does not tell for certain whose results it holds"
+        uncertain = "which does not tell for certain whose results it holds"
+        why = uncertain if form in _OBSOLETE_FORMATS else "which this version cannot read"
         msg = (
             f"{path}: found a study of rockframe {version} (format {form}), {why}; this is "
             f"rockframe {__version__} (formats {FORMAT} and {FOLDER_FORMAT}): run the study again, "

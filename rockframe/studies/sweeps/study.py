@@ -114,11 +114,7 @@ class Study:
 
     @property
     def compile_timeout(self) -> float | None:
-        """Longest time that compilation for lanes may take, a share of the time that they save [s].
-
-        None if no cases run in lanes: without compilation, with histories or points, or if there
-        are too few cases. Results are the same with and without lanes.
-        """
+        """Longest time that compilation for lanes may take [s]; None if no cases run in lanes."""
         sampled = self.histories is not None or bool(self.arguments.points)
         if not COMPILED or sampled or self.grid.count < MIN_CASES_IN_LANES:
             return None
@@ -129,10 +125,8 @@ class Study:
         """Return all that the results depend on: every field, and some scenes of a function."""
         # the source of a function need not determine its scenes
         scenes = [
-            digest_of(description_of(scene))
-            if isinstance(scene, Assembly)
-            else type(scene).__name__
-            for scene in self._inspected_scenes
+            digest_of(description_of(made)) if isinstance(made, Assembly) else type(made).__name__
+            for made in self._inspected_scenes
         ]
         return {"rockframe_version": __version__, **description_of(self), "scenes": scenes}
 
@@ -141,12 +135,9 @@ class Study:
         """Names of the restrainers in results; empty if scenes have different ones."""
         if isinstance(self.scene, SystemScene):
             return self.scene.assembly.setting.link_names
-        made = [
-            scene.setting.link_names
-            for scene in self._inspected_scenes
-            if isinstance(scene, Assembly)
-        ]
-        return made[0] if made and len(set(made)) == 1 else ()
+        made = [made for made in self._inspected_scenes if isinstance(made, Assembly)]
+        names = {scene.setting.link_names for scene in made}
+        return names.pop() if len(names) == 1 else ()
 
     @cached_property
     def _inspected_scenes(self) -> list[Assembly | Exception]:
@@ -264,12 +255,11 @@ class CasesOfJob:
     def scene(self, case: int) -> tuple[Assembly, list[str]]:
         """Return the scene of a case, and the warnings of its assembly."""
         key = self.scene_key(case)
-        assembled = self._scenes.get(key)
-        if assembled is None:
+        if key not in self._scenes:
             values = {axis: column[case] for axis, column in self._of_scene}
             with collected_warnings() as warned:
-                assembled = self._scenes[key] = (self.job.scene.assembled(values), warned)
-        return assembled
+                self._scenes[key] = self.job.scene.assembled(values), warned
+        return self._scenes[key]
 
     @property
     def can_run_in_lanes(self) -> bool:
@@ -278,9 +268,8 @@ class CasesOfJob:
 
     def word_key(self, case: int) -> tuple[Any, ...]:
         """Return the differences between cases that are words or counts."""
-        return tuple(
-            column[case] for axis, column in self._of_scene if axis.name not in self._numbers
-        )
+        words = [column for axis, column in self._of_scene if axis.name not in self._numbers]
+        return tuple(column[case] for column in words)
 
     def _values_of(self, axis: Axis, values: list[Any], which: CaseIndices) -> Any:
         """Return the value of an axis in many cases, which agree where it is no number."""
@@ -338,9 +327,7 @@ class CasesOfJob:
     def plan_of_many(self, which: CaseIndices) -> tuple[Assembly, list[str], Plan]:
         """Return the same of many cases, with the motion of the first before it is scaled."""
         system, messages = self.scene_of_many(which)
-        start = {
-            axis.parameter: self._values_of(axis, column, which) for axis, column in self._start
-        }
+        start = {one.parameter: self._values_of(one, column, which) for one, column in self._start}
         return system, messages, self._plan(system, start, self.unscaled_motion(int(which[0])))
 
     def _plan(
