@@ -11,8 +11,12 @@ from rockframe.errors import ComponentError, SchemaError, did_you_mean, short_re
 from rockframe.results.schema import build_dataset
 from rockframe.results.variables.studies import MOTION
 from rockframe.signals.arrays import Array
-from rockframe.studies.confidence import clopper_pearson, read_confidence, read_shares
-from rockframe.studies.fragility.labelling import BOUND_SUFFIXES
+from rockframe.studies.confidence import (
+    BOUND_SUFFIXES,
+    clopper_pearson,
+    read_confidence,
+    read_shares,
+)
 from rockframe.studies.fragility.trials import flatten_like
 from rockframe.studies.probability import SAMPLING_ATTRIBUTE
 from rockframe.suggestions import with_hints

@@ -149,12 +149,10 @@ def annual_rate(
     dataset = with_variables(dataset, labels)
     for name in ("quantile_intensity", "contributing_intensity"):
         dataset[name].attrs["units"] = unit_of(curves[measure].attrs)
-    attributes = {
-        key: curves.attrs[key] for key in (PERIOD_ATTRIBUTE, "model") if key in curves.attrs
-    }
-    dataset = dataset.assign_attrs(
-        {**attributes, "intensity": measure, "confidence": curves.attrs.get("confidence", math.nan)}
-    )
+    known = curves.attrs
+    attributes = {key: known[key] for key in (PERIOD_ATTRIBUTE, "model") if key in known}
+    attributes |= {"intensity": measure, "confidence": known.get("confidence", math.nan)}
+    dataset = dataset.assign_attrs(attributes)
     _warn_beyond_curve(dataset, curve)
     return dataset.assign_attrs(verdict=_sentence(dataset))
 
@@ -182,17 +180,14 @@ def read_hazard(value: object, measure: xr.DataArray, between: object) -> Hazard
         table = cast("Mapping[str, Any]", value)
         if set(table) not in map(set, _COLUMNS):
             expected = " or ".join(", ".join(map(repr, names)) for names in _COLUMNS)
-            msg = (
-                f"{_OWNER}: a table of hazard has {expected}; found "
-                f"{', '.join(map(short_repr, table))}"
-            )
+            found = ", ".join(map(short_repr, table))
+            msg = f"{_OWNER}: a table of hazard has {expected}; found {found}"
             raise ComponentError(msg)
         values = _read_intensities(table["intensity"], name, unit)
         rates = _read_rates(table)
     else:
-        msg = (
-            f"{_OWNER}: hazard must be a table, a DataArray or a function, got {short_repr(value)}"
-        )
+        expected = "a table, a DataArray or a function"
+        msg = f"{_OWNER}: hazard must be {expected}, got {short_repr(value)}"
         raise ComponentError(msg)
     if rates.shape != values.shape or len(values) < 2:
         msg = (
@@ -226,10 +221,8 @@ def _read_rates(table: Mapping[str, Any]) -> Array:
     years = to_ratio(table["years"], owner=_OWNER, name="years", condition=POSITIVE, example="50")
     chance = np.asarray(table["probability"], dtype=np.float64)
     if np.any(chance <= 0.0) or np.any(chance >= 1.0):
-        msg = (
-            f"{_OWNER}: probabilities must be above 0 and below 1, got "
-            f"{short_repr(chance.tolist())}"
-        )
+        given = short_repr(chance.tolist())
+        msg = f"{_OWNER}: probabilities must be above 0 and below 1, got {given}"
         raise ComponentError(msg)
     return -np.log1p(-chance) / years
 
@@ -308,12 +301,10 @@ def lognormal_rates(
     """Return the rate of a lognormal capacity in parts of a power law, :eq:`eq-rate-of-part`."""
     from scipy.special import ndtr
 
-    with np.errstate(divide="ignore"):
-        eta = (
-            np.log(edges / median) / spread
-            if spread > 0.0
-            else np.where(edges < median, -np.inf, np.inf)
-        )
+    eta = np.where(edges < median, -np.inf, np.inf)
+    if spread > 0.0:
+        with np.errstate(divide="ignore"):
+            eta = np.log(edges / median) / spread
     # where the power law of a part is steep, the hazard at the median is large and the share of
     # capacities within the part is small: their logarithms are added
     shift = slopes * spread
@@ -371,9 +362,8 @@ def _warn_beyond_curve(dataset: xr.Dataset, curve: HazardCurve) -> None:
             rate = dataset["annual_rate"] + dataset[f"unreached_rate_{side}"]
             share = float((dataset[f"unreached_rate_{side}"] / rate).max(skipna=True))
         if share > _WARNING_SHARE:
-            missing.append(
-                f"{side} {end:.4g}{unit}, where it ends, {100.0 * share:.2g} % of the rate"
-            )
+            percentage = f"{100.0 * share:.2g} % of the rate"
+            missing.append(f"{side} {end:.4g}{unit}, where it ends, {percentage}")
     if missing:
         warn(
             f"{_OWNER}: the hazard curve does not reach where the limit states are exceeded: if it "

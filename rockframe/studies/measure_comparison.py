@@ -117,12 +117,9 @@ def compare_intensities(
     runs = check_runs(runs, owner=_OWNER)
     values = scalar_of(runs, response, label, owner=_OWNER)
     named, fits = list[str](), list[CloudFit]()
-    if isinstance(measures, xr.DataArray):
-        measures = [measures]
-    listed = [
-        _measure_and_period(item)
-        for item in checked_list(measures, owner=_OWNER, name="measures", of="measures")
-    ]
+    given_measures = [measures] if isinstance(measures, xr.DataArray) else measures
+    every = checked_list(given_measures, owner=_OWNER, name="measures", of="measures")
+    listed = [_measure_and_period(item) for item in every]
     check_one_structure(runs, pooled, [given for given, _ in listed], owner=_OWNER)
     for given, period in listed:
         measure = measure_of_runs(runs, given, period, motions, owner=_OWNER)
@@ -167,10 +164,8 @@ def _read_covariates(
 ) -> dict[str, xr.DataArray]:
     """Read what the response should not depend on: numbers of the motions by their names."""
     if isinstance(values, Mapping):
-        return {
-            str(name): _covariate_of_runs(runs, str(name), numbers)
-            for name, numbers in values.items()
-        }
+        given = {str(name): numbers for name, numbers in values.items()}
+        return {name: _covariate_of_runs(runs, name, numbers) for name, numbers in given.items()}
     covariates: dict[str, xr.DataArray] = {}
     for name in checked_list(values, owner=_OWNER, name="against", of="names"):
         column = column_of_runs(runs, name)
@@ -228,9 +223,8 @@ def _comparison_dataset(
     }
     names = {"measure": np.array(list(names_of_measures), dtype=object)}
     if covariates:
-        tested = np.array([
-            [_residual_trend(cloud, values) for values in covariates.values()] for cloud in clouds
-        ])  # fmt: skip
+        columns = covariates.values()
+        tested = np.array([[_residual_trend(one, x) for x in columns] for one in clouds])
         values |= {"sufficiency_slope": tested[..., 0], "sufficiency_p_value": tested[..., 1]}
         names["covariate"] = np.array(list(covariates), dtype=object)
     dataset = build_dataset(

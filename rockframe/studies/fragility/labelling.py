@@ -12,7 +12,7 @@ from rockframe.results.schema import build_dataset, with_labels, with_variables
 from rockframe.results.variables.analyses import FragilityStatus
 from rockframe.results.variables.variable import unit_of
 from rockframe.signals.arrays import AnyArray, Array
-from rockframe.studies.confidence import clopper_pearson
+from rockframe.studies.confidence import BOUND_SUFFIXES, clopper_pearson
 from rockframe.studies.fragility.likelihood import Bands, Fit, boundary, fit, gap, jackknife
 from rockframe.studies.fragility.trials import StructureTrials, Trials
 from rockframe.studies.fragility.words import enough_trials
@@ -32,8 +32,6 @@ _INTENSITY_VARIABLES: Final = (
     "cloud_intensity",
 )  # fmt: skip
 """Variables in the unit of the intensity."""
-BOUND_SUFFIXES: Final = ("", "_lower_bound", "_upper_bound")
-"""Endings of the names of an estimate and of its bounds."""
 MeasureLabel = tuple[str, dict[str, Any]]
 """Name and attributes of an intensity measure."""
 
