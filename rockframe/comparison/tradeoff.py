@@ -5,7 +5,7 @@ import time
 import warnings
 from collections.abc import Sequence
 from dataclasses import dataclass, fields, replace
-from typing import Any, Final, TypeAlias, Unpack, cast
+from typing import Final, TypeAlias, Unpack, cast
 
 import numpy as np
 import xarray as xr
@@ -66,11 +66,7 @@ def _slips(run: xr.Dataset) -> AnyArray:
 
 
 def history_error(run: xr.Dataset, reference: xr.Dataset) -> float:
-    """Return the largest difference of both histories of rotation over the reference's peak [1].
-
-    They are compared until one of both ends, over the peak of the whole reference: the errors of
-    several runs against it are shares of one rotation.
-    """
+    """Return the largest difference of both histories of rotation over the reference's peak [1]."""
     if _without_verdict(run, reference):
         return float("nan")
     rotation, expected = (data["rotation"].to_numpy() for data in (run, reference))
@@ -84,9 +80,8 @@ def history_error(run: xr.Dataset, reference: xr.Dataset) -> float:
 
 def event_time_error(run: xr.Dataset, reference: xr.Dataset) -> float:
     """Return the largest difference of the times of events [s]; NaN if their kinds differ."""
-    if _without_verdict(run, reference):
-        return float("nan")
-    if not np.array_equal(run["event_kind"].to_numpy(), reference["event_kind"].to_numpy()):
+    alike = np.array_equal(run["event_kind"].to_numpy(), reference["event_kind"].to_numpy())
+    if _without_verdict(run, reference) or not alike:
         return float("nan")
     difference = run["event_time"].to_numpy() - reference["event_time"].to_numpy()
     return float(np.max(np.abs(difference), initial=0.0))
@@ -188,10 +183,9 @@ def tradeoff(
     repeats = checked_integer(repeats, owner=_OWNER, name="repeats", lowest=1, highest=_MAX_REPEATS)
     models_of_scene = model_ladder(system)
     chosen = _select_models(models_of_scene, models)
-    is_single = isinstance(accuracies, str | float | int | Accuracy)
-    entries: list[Any] = [accuracies] if is_single else checked_list(
-        accuracies, owner=_OWNER, name="accuracies", of="accuracies"
-    )  # fmt: skip
+    one = isinstance(accuracies, float | int | Accuracy)
+    given: object = [accuracies] if one else accuracies
+    entries = checked_list(given, owner=_OWNER, name="accuracies", of="accuracies")
     if not entries:
         msg = f"{_OWNER}: accuracies must be one or more, got {short_repr(accuracies)}"
         raise ComponentError(msg)
@@ -208,13 +202,9 @@ def tradeoff(
         reference = run(system.assembly, plan(system, BENCHMARK))
         rows: list[list[Outcome]] = []
         for scene in chosen.values():
+            plans = [plan(scene, setting) for setting in settings.values()]
             converged = run(scene.assembly, plan(scene, BENCHMARK))
-            rows.append(
-                [
-                    measure_run(scene, plan(scene, setting), converged, reference, repeats)
-                    for setting in settings.values()
-                ]
-            )
+            rows.append([measure_run(scene, p, converged, reference, repeats) for p in plans])
     names = rows[0][0]
     settings_of_labels = {label: vars(setting) for label, setting in settings.items()}
     dataset = build_dataset(
@@ -257,9 +247,7 @@ def measure_run(
         "history_error": history_error(response, reference),
         "verdict_agrees": verdicts_agree(response, reference),
         **{name: response[name].item() for name in _COPIED_SCALARS},
-        **(
-            {"peak_slip": float(response.get("peak_slip", 0.0))} if "peak_slip" in reference else {}
-        ),
+        **{name: float(response.get(name, 0.0)) for name in ("peak_slip",) if name in reference},
     }
 
 
@@ -301,12 +289,8 @@ def _label(value: AccuracyLike) -> str:
     if isinstance(value, float):
         return f"rtol {float(value)!r}"
     if isinstance(value, Accuracy):
-        changed = (
-            f"{field.name} {getattr(value, field.name)}"
-            for field in fields(value)
-            if getattr(value, field.name) != field.default
-        )
-        return ", ".join(changed)
+        every = ((field.name, getattr(value, field.name), field.default) for field in fields(value))
+        return ", ".join(f"{name} {one}" for name, one, usual in every if one != usual)
     return str(value)
 
 

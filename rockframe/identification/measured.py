@@ -24,6 +24,7 @@ _PEAKS: Final = (
     "write peaks=([6.0, 5.2, 4.6], 'deg'), or with their times peaks=((times, 's'), "
     "(rotations, 'deg'))"
 )
+_UNIT_IN_NAME: Final = re.compile(r".*\[(.+)\]\s*")
 
 
 @dataclass(frozen=True)
@@ -131,26 +132,18 @@ def check_below_overturning(measured: History | MeasuredPeaks, angles: Overturni
 
 def _pair_of_arrays(value: object) -> tuple[object, object] | None:
     """Return the two items of a pair of arrays with units, or None of anything else."""
-    if isinstance(value, pd.DataFrame):
-        return _pair_of_columns(value)
+    if isinstance(value, pd.DataFrame):  # with the units in the names of its columns
+        units = [_UNIT_IN_NAME.fullmatch(str(name)) for name in value.columns]
+        if len(units) != 2 or units[0] is None or units[1] is None:
+            return None
+        time, rotation = (value.iloc[:, number].to_numpy() for number in range(2))
+        return (time, units[0][1]), (rotation, units[1][1])
     if not isinstance(value, tuple | list):
         return None
     items = cast("tuple[object, ...]", value)
     if len(items) != 2 or any(isinstance(item, str | float | int) for item in items):
         return None
     return items[0], items[1]
-
-
-_UNIT_IN_NAME: Final = re.compile(r".*\[(.+)\]\s*")
-
-
-def _pair_of_columns(frame: pd.DataFrame) -> tuple[object, object] | None:
-    """Return both columns of a DataFrame, with the units in their names."""
-    units = [_UNIT_IN_NAME.fullmatch(str(name)) for name in frame.columns]
-    if len(units) != 2 or units[0] is None or units[1] is None:
-        return None
-    time, rotation = (frame.iloc[:, number].to_numpy() for number in range(2))
-    return (time, units[0][1]), (rotation, units[1][1])
 
 
 def _read_array(value: object, measure: Measure, name: str) -> Array:
@@ -269,10 +262,10 @@ def swings_of(history: History) -> Swings:
 def restitution_of(
     peaks: Array, theta: Array, frequency_ratio: Array, *, small_rotation: bool
 ) -> float:
-    """Estimate the coefficient of restitution from the decay of peaks on rigid ground.
+    """Estimate restitution from the decay of peaks on rigid ground, :eq:`eq-rigid-decay`.
 
-    The estimate is by :eq:`eq-rigid-decay`. `theta` is the overturning angle on the side of each
-    peak, and `frequency_ratio` is p^2 about the corner on that side over p^2 about the right one.
+    `theta` is the overturning angle on the side of each peak, and `frequency_ratio` is p^2 about
+    the corner on that side over p^2 about the right one.
     """
     size = np.clip(np.abs(peaks), 1e-9 * theta, theta)
     if small_rotation:

@@ -101,7 +101,7 @@ def _rotation_limit(value: Any, owner: str, name: str) -> float:
 
 def _variable_limit(items: tuple[Any, ...], owner: str) -> LimitState:
     """Read a limit state on a scalar of runs: its name, its limit, and the point or body."""
-    name, value, label = (*items, None, None)[:3] if len(items) in (2, 3) else ("", None, None)
+    name, value, label = (*items, None)[:3] if len(items) in (2, 3) else ("", None, None)
     if isinstance(name, str) and name and name not in SCHEMA:
         scalars = [row.name for row in SCHEMA.values() if TIME[0] not in row.dims]
         near = did_you_mean(name, scalars)

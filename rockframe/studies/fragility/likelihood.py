@@ -74,21 +74,17 @@ def fit(trials: Trials, bands: Bands) -> Fit:
         return fitted
     if bands is Bands.SANDWICH:
         of_trial, weight = scores(trials, fitted.coefficients), trials.weight
-        if trials.cluster is None:
-            cluster_scores = of_trial / weight[:, None]
-        else:
-            cluster_scores = cluster_sums(of_trial, trials.cluster)
-            weight = np.ones(len(cluster_scores))
-        return replace(fitted, covariance=sandwich(fitted.covariance, cluster_scores, weight))
+        of_cluster = of_trial / weight[:, None]
+        if trials.cluster is not None:
+            of_cluster = cluster_sums(of_trial, trials.cluster)
+            weight = np.ones(len(of_cluster))
+        return replace(fitted, covariance=sandwich(fitted.covariance, of_cluster, weight))
     if bands is Bands.JACKKNIFE:
         subsets = list(_leave_one_out(trials))
         rows = np.array([_refit(subset, fitted.coefficients) for subset, _ in subsets])
         leave_one_out = rows, np.array([alike for _, alike in subsets])
-        return replace(
-            fitted,
-            covariance=jackknife(fitted.coefficients, *leave_one_out),
-            leave_one_out=leave_one_out,
-        )
+        covariance = jackknife(fitted.coefficients, *leave_one_out)
+        return replace(fitted, covariance=covariance, leave_one_out=leave_one_out)
     return fitted
 
 
@@ -288,25 +284,23 @@ def boundary(trials: Trials, fitted: Fit, level: float) -> Array:
 def _point_within_region(trials: Trials, drop: float) -> tuple[Array, Array, float]:
     """Return coefficients of separated trials, the information there, and the bound.
 
-    The likelihood of separated trials has a bound but no maximum: it increases with the slope. At
-    the coefficients twice the log-likelihood is at most `drop` below the bound. If the gap is a
-    single intensity at which some trials exceed, their share is the most likely probability there.
+    At the coefficients twice the log-likelihood is at most `drop` below the bound.
     """
     from scipy.special import ndtri
 
     low, high = gap(trials) or (0.0, 0.0)
     at_gap, bound = 0.0, 0.0
-    if low == high:
+    if low == high:  # where some trials exceed: their share is the most likely probability there
         over = float(trials.weight[trials.has_upper & (trials.upper[:, 0] == low)].sum())
         under = float(trials.weight[trials.has_lower & (trials.lower[:, 0] == low)].sum())
         share = over / (over + under)
         at_gap, bound = float(ndtri(share)), over * math.log(share) + under * math.log1p(-share)
     median, slope = 0.5 * (low + high), 1.0
-    at = np.array([at_gap - slope * median, slope])
-    while 2.0 * (bound - float(log_likelihood(trials, at[:, None])[0])) > drop:
-        slope *= 1.1
+    while True:  # the likelihood increases with the slope
         at = np.array([at_gap - slope * median, slope])
-    return at, information(trials, at), bound
+        if not 2.0 * (bound - float(log_likelihood(trials, at[:, None])[0])) > drop:
+            return at, information(trials, at), bound
+        slope *= 1.1
 
 
 def gap(trials: Trials) -> tuple[float, float] | None:

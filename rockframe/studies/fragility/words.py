@@ -181,8 +181,7 @@ def _near_separation_sentences(last: xr.Dataset, fitted: AnyArray) -> Iterator[s
         return
     unbounded = np.isnan(last["dispersion_upper_bound"].to_numpy().ravel()[fitted])
     enough = last["independent_count"].to_numpy().ravel()[fitted] >= min(COVERAGE[Bands.JACKKNIFE])
-    count = int((unbounded & enough).sum())
-    if count:
+    if count := int((unbounded & enough).sum()):
         of = "" if len(fitted) == 1 else f" of {count} structure{'s' if count > 1 else ''}"
         yield (
             f"There are no bounds{of}: without one of the motions there is no fit, for hardly any "
