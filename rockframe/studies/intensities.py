@@ -178,7 +178,6 @@ def measure_of_runs(
     runs: xr.Dataset, value: object, period: PeriodLike | None, motions: object, *, owner: str
 ) -> xr.DataArray:
     """Return a measure of the motion of each case: a known one, a column by name, or numbers."""
-    dims = runs["status"].dims
     if motions is not None:
         named_motions(motions)  # also where they are not needed
     value = column_of_runs(runs, value)
@@ -192,17 +191,21 @@ def measure_of_runs(
     if not isinstance(value, xr.DataArray):
         which = Intensity.read(value, period, owner=owner)
         return intensity_of_runs(runs, which, motions, owner=owner)
-    if value.name is None or not set(value.dims) <= set(dims):
+    return aligned_with_runs(runs, value, "intensity", owner=owner)
+
+
+def aligned_with_runs(
+    runs: xr.Dataset, array: xr.DataArray, what: str, *, owner: str
+) -> xr.DataArray:
+    """Return the user's numbers in the order of the runs' labels; NaN where one is missing."""
+    dims = runs["status"].dims
+    if array.name is None or not set(array.dims) <= set(dims):
+        article = "an" if what == "intensity" else "a"
         msg = (
-            f"{owner}: an intensity of one's own needs a name and dimensions among "
-            f"{', '.join(map(str, dims))}, got {value.name!r} over {value.dims}"
+            f"{owner}: {article} {what} of one's own needs a name and dimensions among "
+            f"{', '.join(map(str, dims))}, got {array.name!r} over {array.dims}"
         )
         raise ComponentError(msg)
-    return _aligned_with_runs(runs, value, owner)
-
-
-def _aligned_with_runs(runs: xr.Dataset, array: xr.DataArray, owner: str) -> xr.DataArray:
-    """Return the user's numbers in the order of the runs' labels; NaN where one is missing."""
     for dim in array.dims:
         twice = dim in array.indexes and not array.indexes[dim].is_unique
         if twice and dim in runs.indexes and array.indexes[dim].equals(runs.indexes[dim]):
@@ -212,7 +215,7 @@ def _aligned_with_runs(runs: xr.Dataset, array: xr.DataArray, owner: str) -> xr.
         elif twice or array.sizes[dim] != runs.sizes[dim]:
             words = "labels that stand twice" if twice else f"{array.sizes[dim]} values"
             msg = (
-                f"{owner}: the intensity {array.name!r} has {words} along {str(dim)!r}, of which "
+                f"{owner}: the {what} {array.name!r} has {words} along {str(dim)!r}, of which "
                 f"the runs have {runs.sizes[dim]}"
             )
             raise ComponentError(msg)

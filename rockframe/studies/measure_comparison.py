@@ -19,6 +19,7 @@ from rockframe.studies.fragility.trials import check_one_structure, flatten_like
 from rockframe.studies.intensities import (
     PERIOD_ATTRIBUTE,
     PeriodLike,
+    aligned_with_runs,
     column_of_runs,
     measure_of_runs,
     measure_words,
@@ -140,10 +141,14 @@ def compare_intensities(
     if len(set(named)) < len(named):
         msg = f"{_OWNER}: measures are named twice: {', '.join(named)}"
         raise ComponentError(msg)
-    covariates = {
-        name: flatten_like(array, runs["status"]).astype(np.float64)[fits[0].included]
-        for name, array in _read_covariates(runs, against).items()
-    }
+    covariates: dict[str, Array] = {}
+    for name, array in _read_covariates(runs, against).items():
+        try:
+            numbers = flatten_like(array, runs["status"]).astype(np.float64)
+        except (TypeError, ValueError) as problem:
+            msg = f"{_OWNER}: {name!r} has no numbers, but words or objects; it is no covariate"
+            raise ComponentError(msg) from problem
+        covariates[name] = numbers[fits[0].included]
     dataset = _comparison_dataset(named, [fit.cloud for fit in fits], covariates)
     words = response if label is None else f"{response} {label}"
     return dataset.assign_attrs(response=words, verdict=_sentence(dataset))
@@ -179,7 +184,7 @@ def _read_covariates(
 def _covariate_of_runs(runs: xr.Dataset, name: str, value: Any) -> xr.DataArray:
     """Return the numbers of the motions to the runs."""
     if isinstance(value, xr.DataArray):
-        return value
+        return aligned_with_runs(runs, value.rename(name), "covariate", owner=_OWNER)
     labels = runs[MOTION].to_numpy().astype(str)
     if isinstance(value, Mapping | pd.Series):
         table = dict(cast("Any", value).items())
@@ -196,7 +201,7 @@ def _covariate_of_runs(runs: xr.Dataset, name: str, value: Any) -> xr.DataArray:
                 "give one for each of them, in their order, or by their labels"
             )
             raise ComponentError(msg)
-    numbers = np.array(values, dtype=np.float64).reshape(labels.shape)
+    numbers = np.array(values).reshape(labels.shape)
     return xr.DataArray(numbers, dims=runs[MOTION].dims, coords=runs[MOTION].coords)
 
 
