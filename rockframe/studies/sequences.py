@@ -63,7 +63,7 @@ def earthquake_sequences(
         Over ``sequence`` and ``earthquake``: the scalars of the run from the start of the sequence
         to the end of the pause after that earthquake, NaN beyond the last earthquake. Over
         ``sequence``: ``overturning_earthquake``, the number of the earthquake that overturned the
-        block, 0 if none did, and ``pause`` [s].
+        block, 0 if none did, NaN if a run without a verdict leaves it unknown, and ``pause`` [s].
 
     Raises
     ------
@@ -104,17 +104,25 @@ def earthquake_sequences(
     }
     exists = np.arange(longest) < np.array([[len(sequence)] for sequence in joined.values()])
     arranged = _unstack_sequences(sweep(system, motions, **run), exists)
-    overturned = overturns(arranged).transpose("sequence", EARTHQUAKE).to_numpy() == 1.0
+    verdicts = overturns(arranged).transpose("sequence", EARTHQUAKE).to_numpy()
+    overturned = (verdicts == 1.0).any(axis=1)
+    # after which earthquake the verdict of a sequence is decided, or not known
+    decisive = (verdicts == 1.0) | (np.isnan(verdicts) & exists)
+    first = decisive.argmax(axis=1)
+    number = np.where(decisive.any(axis=1), first + 1.0, 0.0)
+    number[np.isnan(verdicts[np.arange(len(first)), first])] = np.nan
     labels = {
         "sequence": np.array(list(joined), dtype=object),
         EARTHQUAKE: np.arange(1, longest + 1),
-        "overturning_earthquake": overturned.any(axis=1) * (overturned.argmax(axis=1) + 1),
+        "overturning_earthquake": number,
         "pause": np.array([_actual_pause(sequence[0], pause_time) for sequence in named.values()]),
     }
     dataset = with_variables(arranged, labels)
     of_all = "1 sequence" if len(joined) == 1 else f"all {len(joined)} sequences"
-    verdict = f"Of {of_all} {int(overturned.any(axis=1).sum())} overturned."
-    return dataset.assign_attrs(title="Earthquakes in sequence", verdict=verdict)
+    text = f"Of {of_all} {int(overturned.sum())} overturned"
+    if unknown := int((np.isnan(number) & ~overturned).sum()):
+        text += f"; {unknown} {'has' if unknown == 1 else 'have'} no verdict"
+    return dataset.assign_attrs(title="Earthquakes in sequence", verdict=f"{text}.")
 
 
 def _read_sequences(value: object) -> dict[str, list[GroundMotion]]:
