@@ -157,14 +157,12 @@ def critical_scale(
     count = checked_integer(scales, owner=_OWNER, name="scales", lowest=2, highest=MOST_RUNS)
     max_runs = checked_integer(runs, owner=_OWNER, name="runs", lowest=count, highest=MOST_RUNS)
     plan = plan_run(system.assembly, motion, outputs=None, **requested)
-    measure = None
-    if intensity is not None:
-        measure = ScaledIntensity(
-            system, motion, intensity, period=period, damping_ratio=damping_ratio, owner=_OWNER
-        )
-    elif period is not None:
+    if intensity is None and period is not None:
         msg = f"{_OWNER}: period is that of an intensity; give intensity too"
         raise ComponentError(msg)
+    measure = None if intensity is None else ScaledIntensity(
+        system, motion, intensity, period=period, damping_ratio=damping_ratio, owner=_OWNER
+    )  # fmt: skip
 
     uplift_scale = _uplift_scale(system, plan)
     least = 0.0 if math.isnan(uplift_scale) else min(uplift_scale, greatest_scale)

@@ -299,9 +299,7 @@ def unstack_cases(
 ) -> xr.Dataset:
     """Return a dataset with several dimensions in place of the rows of a table."""
     variables: dict[Hashable, xr.Variable] = {}
-    for name, variable in runs.variables.items():
-        if name == CASE or name in labels:
-            continue
+    for name, variable in runs.drop_vars([CASE, *labels], errors="ignore").variables.items():
         wide = variable.unstack({CASE: dict(sizes)}) if CASE in variable.dims else variable
         other_dims = [dim for dim in wide.dims if dim not in sizes]
         variables[name] = wide.transpose(*(dim for dim in sizes if dim in wide.dims), *other_dims)
@@ -334,9 +332,7 @@ def read_line_axes(
         except RockframeError as problem:
             reasons = problem.faults if isinstance(problem, StudyError) else (str(problem),)
             argument = did_you_mean(name, argument_names)
-            faults += [
-                reason if argument in reason else f"{reason}{argument}" for reason in reasons
-            ]
+            faults += [f"{why}{argument if argument not in why else ''}" for why in reasons]
     for axis in line_axes:
         if axis.changes is Changes.MOTION:
             faults.append(f"axis {axis.name!r} scales the motion, as scale does; give scale alone")

@@ -323,7 +323,7 @@ class LineScan:
         before. Only the runs of the scan have `histories`.
         """
         with sweep_rounds(self.scene, self.motions, self.options, owner=self.owner) as rounds:
-            columns = self._row_columns(slice(None))
+            columns = table_of(self.columns)
             scan, completed = rounds.sweep("scan", columns or None, {SCALE: scales}, **histories)
 
             def run_at(part: str, requested: LineScales) -> tuple[Array, bool]:
@@ -380,13 +380,17 @@ class LineScan:
         lines, scales = (np.array(values) for values in zip(*requested, strict=True))
         names = list(self.motions)
         rows, motions = np.divmod(lines, len(names))
-        cases = {**self._row_columns(rows), SCALE: scales, MOTION: [names[k] for k in motions]}
+        columns = table_of(self.columns, rows)
+        cases = {**columns, SCALE: scales, MOTION: [names[k] for k in motions]}
         runs, completed = rounds.sweep(part, cases, {}, follow_up=True)
         return runs, self.verdicts(runs).transpose(VERDICT_DIM, CASE).to_numpy(), completed
 
-    def _row_columns(self, rows: Any) -> dict[str, Any]:
-        columns = self.columns.items()
-        return {head(name, unit): values[rows] for name, (values, unit) in columns}
+
+def table_of(
+    columns: Mapping[str, tuple[Array, str]], rows: AnyArray | slice = slice(None)
+) -> dict[str, Any]:
+    """Return a table of cases, or some of its rows, from columns and their units."""
+    return {head(name, unit): values[rows] for name, (values, unit) in columns.items()}
 
 
 def _has_moved(runs: xr.Dataset) -> xr.DataArray:

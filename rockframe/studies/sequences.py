@@ -140,20 +140,18 @@ def _read_sequences(value: object) -> dict[str, list[GroundMotion]]:
         named = {f"sequence {number}": sequence for number, sequence in enumerate(listed, start=1)}
     else:
         named = {}
-    sequences: dict[str, list[GroundMotion]] = {}
-    for name, sequence in named.items():
-        motions = [sequence] if isinstance(sequence, GroundMotion) else checked_list(
-            sequence, owner=_OWNER, name=repr(name), of="GroundMotions"
-        )  # fmt: skip
-        if not motions or not all(isinstance(motion, GroundMotion) for motion in motions):
-            msg = (
-                f"{_OWNER}: {name!r} needs GroundMotions in their order, got {short_repr(sequence)}"
-            )
-            raise ComponentError(msg)
-        sequences[name] = motions
-    if not sequences:
+    if not named:
         msg = f"{_OWNER}: found {short_repr(value)}; expected sequences of GroundMotions"
         raise ComponentError(msg)
+    sequences: dict[str, list[GroundMotion]] = {}
+    for name, sequence in named.items():
+        given = [sequence] if isinstance(sequence, GroundMotion) else sequence
+        motions = checked_list(given, owner=_OWNER, name=repr(name), of="GroundMotions")
+        if not motions or not all(isinstance(motion, GroundMotion) for motion in motions):
+            needed = f"{name!r} needs GroundMotions in their order"
+            msg = f"{_OWNER}: {needed}, got {short_repr(sequence)}"
+            raise ComponentError(msg)
+        sequences[name] = motions
     return {name: _with_common_step(motions) for name, motions in sequences.items()}
 
 
@@ -189,10 +187,8 @@ def _join(first: GroundMotion, second: GroundMotion | None, pause_time: float) -
     horizontal = _concatenate([motion.si.horizontal for motion in motions], still)
     vertical = None
     if any(motion.si.vertical is not None for motion in motions):
-        components = (
-            motion.si.vertical or _zero_vertical(motion.si.horizontal) for motion in motions
-        )
-        vertical = _concatenate([*components], still)
+        components = [motion.si.vertical or _still(motion.si.horizontal) for motion in motions]
+        vertical = _concatenate(components, still)
     name = ", then ".join(motion.name for motion in motions)
     return GroundMotion(Motion(horizontal, vertical), name=name)
 
@@ -208,10 +204,10 @@ def _actual_pause(motion: GroundMotion, pause_time: float) -> float:
     return pause_time if math.isclose(pause, pause_time, rel_tol=_STEP_TOLERANCE) else pause
 
 
-def _zero_vertical(horizontal: Signal) -> Signal:
+def _still(horizontal: Signal) -> Signal:
     """Return a vertical component that is zero, of the length of the horizontal one."""
-    still = np.zeros(horizontal.samples.size)
-    return replace(horizontal, samples=still, polynomials=None, name="vertical")
+    zeros = np.zeros(horizontal.samples.size)
+    return replace(horizontal, samples=zeros, polynomials=None, name="vertical")
 
 
 def _concatenate(signals: Sequence[Signal], still: int) -> Signal:

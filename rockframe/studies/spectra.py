@@ -12,7 +12,6 @@ from rockframe.components import Block
 from rockframe.errors import ComponentError, collected_warnings
 from rockframe.results.outcome import overturns
 from rockframe.results.schema import build_dataset, with_variables
-from rockframe.results.table import head
 from rockframe.results.variables.studies import CASE, MOTION
 from rockframe.shared_arguments import with_shared_arguments
 from rockframe.simulation.system import System, check_system
@@ -32,6 +31,7 @@ from rockframe.studies.line_scan import (
     read_scales,
     read_sorted,
     read_width,
+    table_of,
 )
 from rockframe.studies.sweeps.arguments import SweepArguments
 from rockframe.studies.sweeps.motions import SCALE, MotionsLike
@@ -173,9 +173,8 @@ def rocking_spectrum(
     {'slenderness': 1, 'rocking_period': 3, 'motion': 1}
     """
     sizes = BlockSizes(system, periods, slenderness, axes, owner=_ROCKING)
-    heads = {head(name, unit): values for name, (values, unit) in sizes.columns.items()}
     named = needed_motions(motions, scene_of(system), owner=_ROCKING)
-    runs = sweep(sizes.system, named, cases=heads, **run)
+    runs = sweep(sizes.system, named, cases=table_of(sizes.columns), **run)
     return sizes.unstack(runs).assign_attrs(title="Rocking spectrum")
 
 
