@@ -124,10 +124,8 @@ def run_cases(
     if compile_timeout is not None:
         ready = compilation_check(compile_timeout)
         for several in run_assembled_together(cases, which, stopped, ready):
-            if isinstance(several, Finished):
-                remaining.discard(several.case)
-            else:
-                remaining.difference_update(several.cases.tolist())
+            ran = [several.case] if isinstance(several, Finished) else several.cases.tolist()
+            remaining.difference_update(ran)
             yield several
         for outcome in run_assembled_singly(cases, sorted(remaining), stopped, ready):
             if isinstance(outcome, Failed):
@@ -162,11 +160,7 @@ def verdict_looks(
 
 
 def run_chunk(job: SweepJob, stopped: Callable[[], bool] = lambda: False) -> CaseResults | None:
-    """Run the cases of a job: side by side where they can, else one after the other.
-
-    The result of a case depends on that case alone, and equals that of
-    :meth:`rockframe.System.simulate`.
-    """
+    """Run the cases of a job; each result equals that of :meth:`rockframe.System.simulate`."""
     cases = CasesOfJob(job)
     collected = _Collector(len(cases), job)
     looks: dict[int, Look] = {}

@@ -145,7 +145,16 @@ def dataset_without_results(
 
 def with_coordinates(dataset: xr.Dataset, labels: SweepLabels, message: xr.Variable) -> xr.Dataset:
     """Add the axes, and the messages of the cases."""
-    dataset = dataset.assign_coords({**_coordinates(labels), MESSAGE: message})
+    grid, axes = labels.grid, dict[str, xr.Variable]()
+    for axis in (*grid.axes, *grid.columns):
+        words = axis.values.dtype.kind == "U"
+        values = axis.values.astype(object) if words else axis.values
+        dim = axis.name if axis in grid.axes else CASE
+        axes[axis.name] = xr.Variable(dim, values, axis.attributes())
+    if grid.motion_column is not None:
+        names = np.array(labels.motions, dtype=object)[grid.motion_column]
+        axes[MOTION] = xr.Variable(CASE, names, SCHEMA[MOTION].attributes())
+    dataset = dataset.assign_coords({**axes, MESSAGE: message})
     # the numbers of bodies, and the names of restrainers, that results are of
     coordinates: dict[str, Any] = {}
     if (count := dataset.sizes.get(BODY[0])) is not None:
@@ -156,20 +165,6 @@ def with_coordinates(dataset: xr.Dataset, labels: SweepLabels, message: xr.Varia
             names = [str(k + 1) for k in range(count)]
         coordinates[RESTRAINER[0]] = np.array(names, dtype=object)
     return without_fill_values(with_variables(dataset, coordinates))
-
-
-def _coordinates(labels: SweepLabels) -> dict[str, xr.Variable]:
-    grid = labels.grid
-    coordinates: dict[str, xr.Variable] = {}
-    for axis in (*grid.axes, *grid.columns):
-        words = axis.values.dtype.kind == "U"
-        values = axis.values.astype(object) if words else axis.values
-        dim = axis.name if axis in grid.axes else CASE
-        coordinates[axis.name] = xr.Variable(dim, values, axis.attributes())
-    if grid.motion_column is not None:
-        names = np.array(labels.motions, dtype=object)[grid.motion_column]
-        coordinates[MOTION] = xr.Variable(CASE, names, SCHEMA[MOTION].attributes())
-    return coordinates
 
 
 def _driver_words(drivers: AnyArray) -> str:
