@@ -230,7 +230,10 @@ class Swings:
 def swings_of(history: History) -> Swings:
     """Find the swings of a measured history."""
     time, rotation = history.time, history.rotation
-    offset = _offset(rotation)
+    first = float(np.median(rotation[:3]))
+    # the offset is the median after the rotation first falls below half its initial value
+    decayed = np.flatnonzero(rotation * np.sign(first) < 0.5 * abs(first))
+    offset = float(np.median(rotation[decayed[0] :])) if decayed.size else 0.0
     swing = rotation - offset
     first = float(np.median(swing[:3]))
     side = np.where(np.abs(swing) > _MIN_SWING * abs(first), np.sign(swing), 0.0)
@@ -253,10 +256,9 @@ def swings_of(history: History) -> Swings:
         when, size = _peak_of_swing(time[inside], swing[inside])
         times.append(when)
         sizes.append(size + offset)
-    rotation = np.array(sizes)
-    return Swings(
-        MeasuredPeaks(rotation, np.sign(rotation - offset), np.array(times)), crossing, offset
-    )
+    peaks = np.array(sizes)
+    measured = MeasuredPeaks(peaks, np.sign(peaks - offset), np.array(times))
+    return Swings(measured, crossing, offset)
 
 
 def restitution_of(
@@ -276,13 +278,6 @@ def restitution_of(
     weights = energy / np.maximum(slope, 1e-3 * theta)
     gradient = np.polyfit(np.arange(size.size), np.log(frequency_ratio * energy), 1, w=weights)[0]
     return float(math.exp(0.5 * gradient))
-
-
-def _offset(rotation: Array) -> float:
-    """Return the median of the rotation after it first falls below half its initial value."""
-    first = float(np.median(rotation[:3]))
-    decayed = np.flatnonzero(rotation * np.sign(first) < 0.5 * abs(first))
-    return float(np.median(rotation[decayed[0] :])) if decayed.size else 0.0
 
 
 def _peak_of_swing(time: Array, swing: Array) -> tuple[float, float]:

@@ -153,7 +153,10 @@ class Store:
         with _writing_to(path):
             if not (path / _STUDY).exists():
                 _create(path, study, chunk)
-            _remove_stale_parts(path)
+            for part in (*path.glob(".*.part"), *path.glob(f"{_FOLDERS}.*.part")):
+                with suppress(OSError):
+                    if time.time() - part.stat().st_mtime > _STALE_AGE:
+                        part.unlink()
         head = _read_head(path)
         if head["rockframe_version"] != __version__:
             msg = (
@@ -213,18 +216,17 @@ class Store:
 
     def put(self, chunk: Chunk, rows: CaseResults) -> None:
         """Store the results of a chunk."""
-        arrays = {
-            **dict(zip(_CHUNK_ARRAYS, (rows.status, rows.message), strict=True)),
-            **{f"{_SCALAR}{name}": values for name, values in sorted(rows.scalars.items())},
-            **{f"{_HISTORY}{name}": values for name, values in sorted(rows.histories.items())},
-        }
+        arrays = dict(zip(_CHUNK_ARRAYS, (rows.status, rows.message), strict=True))
+        for kind, columns in ((_SCALAR, rows.scalars), (_HISTORY, rows.histories)):
+            arrays |= {f"{kind}{name}": values for name, values in sorted(columns.items())}
+        file = self._file(chunk)
         try:
-            self._file(chunk).parent.mkdir(exist_ok=True)
-            write_arrays(self._file(chunk), self._described(chunk) | {"texts": rows.texts}, arrays)
+            file.parent.mkdir(exist_ok=True)
+            write_arrays(file, self._described(chunk) | {"texts": rows.texts}, arrays)
         except OSError as problem:
             msg = (
-                f"{self._file(chunk)} cannot be written: {problem}; all chunks before it are "
-                "stored, and the same call continues from there"
+                f"{file} cannot be written: {problem}; all chunks before it are stored, and the "
+                "same call continues from there"
             )
             raise StudyError(msg) from problem
 
@@ -408,13 +410,6 @@ def _read_head(path: Path) -> dict[str, Any]:
         msg = f"{file}: damaged: entries are missing"
         raise StudyError(msg)
     return head
-
-
-def _remove_stale_parts(path: Path) -> None:
-    for part in (*path.glob(".*.part"), *path.glob(f"{_FOLDERS}.*.part")):
-        with suppress(OSError):
-            if time.time() - part.stat().st_mtime > _STALE_AGE:
-                part.unlink()
 
 
 def staggered(chunks: list[Chunk]) -> list[Chunk]:
