@@ -160,7 +160,7 @@ class RockframeAccessor:
         """The outcome in one sentence, of a run or of a selection of cases."""
         from rockframe.studies.dynamic_analysis import verdict_of_analysis
         from rockframe.studies.fragility.words import verdict_of_fragility
-        from rockframe.studies.sweeps.words import cases_verdict
+        from rockframe.studies.sweeps.labelling import cases_verdict
 
         if "fragility_status" in self._dataset:
             return verdict_of_fragility(self._dataset)

@@ -1,8 +1,7 @@
 """Computing time against accuracy: comparison of models and tolerances for a scene."""
 
 from rockframe.comparison.models import model_ladder
-from rockframe.comparison.recommend import Recommendation, recommend
-from rockframe.comparison.tradeoff import tradeoff
+from rockframe.comparison.tradeoff import Recommendation, recommend, tradeoff
 
 __all__ = ["Recommendation", "model_ladder", "recommend", "tradeoff"]
 

@@ -122,9 +122,7 @@ def model_ladder(system: System) -> dict[str, System]:
                 if "ground" in components:
                     parts["ground"] = components["ground"]
                 words = name.format(**_base_names(bases))
-                for rotation in Rotation.SMALL, Rotation.FINITE:
-                    if rotation is Rotation.FINITE and system.rotation is Rotation.SMALL:
-                        continue
+                for rotation in dict.fromkeys((Rotation.SMALL, system.rotation)):
                     last = f"{words}, small rotations" if rotation is Rotation.SMALL else words
                     if rocks:
                         models[last] = System(
@@ -147,9 +145,7 @@ def model_ladder(system: System) -> dict[str, System]:
 def _without_sliding(part: Component) -> Component:
     """Return a base, or a stack with all its interfaces, without sliding."""
     if isinstance(part, Stack):
-        return part.replace(
-            interfaces=[_without_sliding(interface) for interface in part.interfaces]
-        )
+        return part.replace(interfaces=[*map(_without_sliding, part.interfaces)])
     if isinstance(part, RigidGround):
         return RigidGround(restitution=part.si.restitution)
     if isinstance(part, TwoSpringSupport | WinklerSoil):
@@ -163,11 +159,9 @@ def _bases(arguments: Mapping[str, Any], slots: tuple[str, ...]) -> Iterator[dic
     simpler = {
         slot: part.simpler() if isinstance(part, OwnBase) else () for slot, part in bases.items()
     }
-    for step in range(max((len(parts) for parts in simpler.values()), default=0)):
-        yield {
-            slot: (*simpler[slot], part)[min(step, len(simpler[slot]))]
-            for slot, part in bases.items()
-        }
+    for step in range(max(map(len, simpler.values()), default=0)):
+        rungs = {slot: (*simpler[slot], part) for slot, part in bases.items()}
+        yield {slot: rung[min(step, len(rung) - 1)] for slot, rung in rungs.items()}
     yield bases
 
 

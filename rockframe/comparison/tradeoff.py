@@ -1,19 +1,25 @@
-"""Computing time against error, over the models of a scene and the accuracies."""
+"""Computing time against error, over models and accuracies, and the choice among these."""
 
 import json
 import time
 import warnings
 from collections.abc import Sequence
-from dataclasses import fields, replace
-from typing import Any, Final, TypeAlias, Unpack
+from dataclasses import dataclass, fields, replace
+from typing import Final, TypeAlias, Unpack, cast
 
 import numpy as np
 import xarray as xr
 
 from rockframe.arguments import checked_integer, checked_list
 from rockframe.comparison.models import model_ladder
-from rockframe.comparison.recommend import DIMENSIONS, recommend
-from rockframe.errors import ComponentError, ModelWarning, SolverWarning, did_you_mean, short_repr
+from rockframe.errors import (
+    ComponentError,
+    ModelWarning,
+    SchemaError,
+    SolverWarning,
+    did_you_mean,
+    short_repr,
+)
 from rockframe.motion import GroundMotion
 from rockframe.results.outcome import MIN_REPORTED_SLIP, PEAK_SLIPS, verdict_of
 from rockframe.results.schema import build_dataset
@@ -31,7 +37,9 @@ from rockframe.solve.equations import (
     is_fully_compiled,
     runs_as_python,
 )
+from rockframe.suggestions import suggests_names, with_hints
 from rockframe.system.options import AccuracyLike
+from rockframe.units import POSITIVE, to_ratio
 
 
 def verdicts_agree(run: xr.Dataset, reference: xr.Dataset) -> bool:
@@ -58,11 +66,7 @@ def _slips(run: xr.Dataset) -> AnyArray:
 
 
 def history_error(run: xr.Dataset, reference: xr.Dataset) -> float:
-    """Return the largest difference of both histories of rotation over the reference's peak [1].
-
-    They are compared until one of both ends, over the peak of the whole reference: the errors of
-    several runs against it are shares of one rotation.
-    """
+    """Return the largest difference of both histories of rotation over the reference's peak [1]."""
     if _without_verdict(run, reference):
         return float("nan")
     rotation, expected = (data["rotation"].to_numpy() for data in (run, reference))
@@ -76,9 +80,8 @@ def history_error(run: xr.Dataset, reference: xr.Dataset) -> float:
 
 def event_time_error(run: xr.Dataset, reference: xr.Dataset) -> float:
     """Return the largest difference of the times of events [s]; NaN if their kinds differ."""
-    if _without_verdict(run, reference):
-        return float("nan")
-    if not np.array_equal(run["event_kind"].to_numpy(), reference["event_kind"].to_numpy()):
+    alike = np.array_equal(run["event_kind"].to_numpy(), reference["event_kind"].to_numpy())
+    if _without_verdict(run, reference) or not alike:
         return float("nan")
     difference = run["event_time"].to_numpy() - reference["event_time"].to_numpy()
     return float(np.max(np.abs(difference), initial=0.0))
@@ -180,10 +183,9 @@ def tradeoff(
     repeats = checked_integer(repeats, owner=_OWNER, name="repeats", lowest=1, highest=_MAX_REPEATS)
     models_of_scene = model_ladder(system)
     chosen = _select_models(models_of_scene, models)
-    is_single = isinstance(accuracies, str | float | int | Accuracy)
-    entries: list[Any] = [accuracies] if is_single else checked_list(
-        accuracies, owner=_OWNER, name="accuracies", of="accuracies"
-    )  # fmt: skip
+    one = isinstance(accuracies, float | int | Accuracy)
+    given: object = [accuracies] if one else accuracies
+    entries = checked_list(given, owner=_OWNER, name="accuracies", of="accuracies")
     if not entries:
         msg = f"{_OWNER}: accuracies must be one or more, got {short_repr(accuracies)}"
         raise ComponentError(msg)
@@ -200,13 +202,9 @@ def tradeoff(
         reference = run(system.assembly, plan(system, BENCHMARK))
         rows: list[list[Outcome]] = []
         for scene in chosen.values():
+            plans = [plan(scene, setting) for setting in settings.values()]
             converged = run(scene.assembly, plan(scene, BENCHMARK))
-            rows.append(
-                [
-                    measure_run(scene, plan(scene, setting), converged, reference, repeats)
-                    for setting in settings.values()
-                ]
-            )
+            rows.append([measure_run(scene, p, converged, reference, repeats) for p in plans])
     names = rows[0][0]
     settings_of_labels = {label: vars(setting) for label, setting in settings.items()}
     dataset = build_dataset(
@@ -249,9 +247,7 @@ def measure_run(
         "history_error": history_error(response, reference),
         "verdict_agrees": verdicts_agree(response, reference),
         **{name: response[name].item() for name in _COPIED_SCALARS},
-        **(
-            {"peak_slip": float(response.get("peak_slip", 0.0))} if "peak_slip" in reference else {}
-        ),
+        **{name: float(response.get(name, 0.0)) for name in ("peak_slip",) if name in reference},
     }
 
 
@@ -293,10 +289,162 @@ def _label(value: AccuracyLike) -> str:
     if isinstance(value, float):
         return f"rtol {float(value)!r}"
     if isinstance(value, Accuracy):
-        changed = (
-            f"{field.name} {getattr(value, field.name)}"
-            for field in fields(value)
-            if getattr(value, field.name) != field.default
-        )
-        return ", ".join(changed)
+        every = ((field.name, getattr(value, field.name), field.default) for field in fields(value))
+        return ", ".join(f"{name} {one}" for name, one, usual in every if one != usual)
     return str(value)
+
+
+_RECOMMEND: Final = "recommend"
+_MIN_PERCENTAGE: Final = 1e-4
+"""Smallest error written as a percentage; a percentage with an exponent is easily misread."""
+DIMENSIONS: Final = ("model", "accuracy")
+_NEEDED: Final = ("run_time", "verdict_agrees", *DIMENSIONS)
+_ERRORS: Final = {"peak_error": "the peak rotation", "history_error": "the rotation along time"}
+
+
+@suggests_names
+@dataclass(frozen=True)
+class Recommendation:
+    """The cheapest model and accuracy that meet a tolerance; ``str`` gives it as a sentence.
+
+    Parameters
+    ----------
+    model, accuracy : str
+        Labels of model and accuracy. If none meets the tolerance, those of the least error.
+    met : bool
+        Whether they meet the tolerance.
+    sentence : str
+        The recommendation in words.
+
+    Examples
+    --------
+    >>> import rockframe as rf
+    >>> best = Recommendation("rigid ground", "fast", met=True, sentence="Take 'rigid ground'.")
+    >>> print(best)
+    Take 'rigid ground'.
+    """
+
+    model: str
+    accuracy: str
+    met: bool
+    sentence: str
+
+    def __str__(self) -> str:
+        return self.sentence
+
+
+@with_hints()
+def recommend(
+    dataset: xr.Dataset, tolerance: float = 0.01, *, error: str = "peak_error"
+) -> Recommendation:
+    """Choose the cheapest model and accuracy with the right verdict and an admissible error.
+
+    Parameters
+    ----------
+    dataset : xarray.Dataset
+        Dataset of :func:`rockframe.tradeoff`.
+    tolerance : float, optional
+        Admissible error of model and integration together, at most 1: 0.05 or ``"5 %"`` for
+        five per cent [1].
+    error : {"peak_error", "history_error"}, optional
+        Error to which the tolerance applies.
+
+    Returns
+    -------
+    Recommendation
+        ``str`` of it is a sentence, and its ``model`` a key of :func:`rockframe.model_ladder`.
+
+    Raises
+    ------
+    SchemaError
+        If the dataset is no comparison of models, or has no such error.
+    UnitsError, ComponentError
+        If `tolerance` is not dimensionless, or not above 0 and at most 1.
+
+    Examples
+    --------
+    >>> import rockframe as rf
+    >>> system = rf.System(rf.Block(width="0.8 m", height="4 m", mass="2 t"))
+    >>> pulse = rf.GroundMotion.sine_pulse("2.5 m/s^2", "1 Hz")
+    >>> found = rf.tradeoff(system, pulse, models="rigid ground", accuracies="standard", repeats=1)
+    >>> rf.recommend(found, "1 %").accuracy
+    'standard'
+    """
+    limit = to_ratio(tolerance, owner=_RECOMMEND, name="tolerance", condition=POSITIVE)
+    if limit > 1.0:
+        msg = (
+            f"{_RECOMMEND}: tolerance must be at most 1, the whole peak, got "
+            f"{short_repr(tolerance)}; for {_plain_number(limit, 3)} % write "
+            f"{_plain_number(0.01 * limit, 3)}"
+        )
+        raise ComponentError(msg)
+    if not isinstance(cast("object", dataset), xr.Dataset):
+        msg = (
+            f"{_RECOMMEND}: found {short_repr(dataset)}; expected a comparison of models, "
+            "as rockframe.tradeoff(system, motion) gives it"
+        )
+        raise SchemaError(msg)
+    if not isinstance(cast("object", error), str) or error not in _ERRORS:
+        known, near = " or ".join(map(repr, _ERRORS)), did_you_mean(error, _ERRORS)
+        msg = f"{_RECOMMEND}: error must be {known}, got {short_repr(error)}{near}"
+        raise SchemaError(msg)
+    missing = [name for name in (error, *_NEEDED) if name not in dataset]
+    if missing:
+        msg = f"{_RECOMMEND}: found a dataset without {missing[0]!r}; expected one of tradeoff()"
+        raise SchemaError(msg)
+    # a part of a comparison may have lost a dimension, or have them in another order
+    lost = [dim for dim in DIMENSIONS if dim not in dataset.dims]
+    dataset = dataset.expand_dims(lost).transpose(*DIMENSIONS, ...)
+    agrees = dataset["verdict_agrees"].to_numpy()
+    errors = np.where(agrees, dataset[error], np.inf)
+    times = dataset["run_time"].to_numpy()
+    admissible = errors <= limit
+    # an error relative to no rotation at all is infinite, though the verdict is right
+    nearness = np.where(agrees, np.minimum(errors, np.finfo(float).max), np.inf)
+    ranking = np.where(admissible, times, np.inf) if admissible.any() else nearness
+    row, column = np.unravel_index(int(np.argmin(ranking)), ranking.shape)
+    model = str(dataset["model"].to_numpy()[row])
+    accuracy = str(dataset["accuracy"].to_numpy()[column])
+    met = bool(admissible.any())
+    choice = f"{model!r} at accuracy {accuracy!r}"
+    cost = f"{_plain_number(1e3 * times[row, column], 3)} ms a run"
+    quantity = _ERRORS[error] + " or slip" * (error == "peak_error" and "peak_slip" in dataset)
+    distance = f"off by {_error_words(errors[row, column], 2)} in {quantity}"
+    if met:
+        slowest = float(np.max(times)) / float(times[row, column])
+        gain = f", {_plain_number(slowest, 3)} times faster than the slowest rung"
+        sentence = (
+            f"For an error of at most {_error_words(limit, 3)}, take {choice}: {distance}, "
+            f"{cost}{gain * (slowest > 1.0)}."
+        )
+        if error == "peak_error" and "overturned" in dataset and dataset["overturned"][row, column]:
+            sentence += (
+                " It overturns, and its peak is where that ends the run, in any model: "
+                "error='history_error' compares them along time."
+            )
+    elif agrees[row, column]:
+        sentence = f"No rung tried comes within {_error_words(limit, 3)}"
+        if np.isfinite(errors[row, column]):
+            sentence += f"; the nearest is {choice}: {distance}."
+        else:
+            sentence += ": the scene itself does not rotate, but all rungs with its verdict do."
+    elif bool(dataset[error].isnull().all()):
+        sentence = "There is no error: the scene itself or all rungs ended before their verdict."
+    else:
+        sentence = "No rung tried has the verdict of the scene itself."
+    return Recommendation(model, accuracy, met, sentence)
+
+
+def _error_words(value: float, digits: int) -> str:
+    """Write an error as a percentage, or a very small one as a share of the peak."""
+    if 0.0 < value < _MIN_PERCENTAGE:
+        text = np.format_float_scientific(value, digits - 1, trim="-", exp_digits=1)
+        return f"{text.replace('.e', 'e')} of the peak"
+    return f"{_plain_number(100.0 * value, digits)} %"
+
+
+def _plain_number(value: float, digits: int) -> str:
+    """Write a number without an exponent, to `digits` digits or to the decimal point."""
+    if value >= 10.0 ** (digits - 1):
+        return f"{value:.0f}"
+    return np.format_float_positional(value, digits, unique=False, fractional=False, trim="-")

@@ -8,8 +8,7 @@ from typing import Any, Final, cast
 import numpy as np
 
 from rockframe.identification.measured import History, MeasuredPeaks, Swings
-from rockframe.identification.prediction import Prediction
-from rockframe.identification.unknowns import Circumstance, Unknown, with_starts
+from rockframe.identification.prediction import Circumstance, Prediction, Unknown, with_starts
 from rockframe.signals.arrays import Array
 
 DIFFERENCE_STEP: Final = 1e-4
@@ -165,14 +164,6 @@ _REWEIGHTINGS: Final = 4
 """Number of times that the noise of rotations and of times is estimated from their residuals."""
 
 
-@dataclass(frozen=True)
-class Weights:
-    """Standard deviations by which the residuals of peaks are divided."""
-
-    rotation: float  # of the rotations of peaks [rad]
-    time: float  # of the times of peaks [s]
-
-
 def fit_history(
     prediction: Prediction, measured: History, swings: Swings, unknowns: Sequence[Unknown]
 ) -> Solution:
@@ -183,7 +174,7 @@ def fit_history(
 
     starts = [list(unknowns)]
     if swings.peaks.rotation.size >= _MIN_PEAKS:
-        misfit = _peak_residuals(prediction, swings.peaks, _initial_weights(swings.peaks))
+        misfit = _peak_residuals(prediction, swings.peaks, _initial_noise(swings.peaks))
         starts.append(with_starts(unknowns, _fit_roughly(misfit, unknowns).values))
     fits = [_fit_roughly(residuals, start) for start in starts]
     best = min(fits, key=lambda fit: float(fit.residuals @ fit.residuals))
@@ -193,21 +184,21 @@ def fit_history(
 def fit_peaks(
     prediction: Prediction, measured: MeasuredPeaks, unknowns: Sequence[Unknown]
 ) -> Solution:
-    """Fit peaks, the n-th of the run to the n-th that was measured.
-
-    Rotations and times, where there are times, are weighted by their noise, which is estimated
-    from the residuals, :eq:`eq-fit-peaks`.
-    """
-    initial = weights = _initial_weights(measured)
-    misfit = _peak_residuals(prediction, measured, weights)
+    """Fit peaks, the n-th of the run to the n-th that was measured, :eq:`eq-fit-peaks`."""
+    initial = noise = _initial_noise(measured)
+    misfit = _peak_residuals(prediction, measured, noise)
     solution = minimize(misfit, with_starts(unknowns, _fit_roughly(misfit, unknowns).values))
     if measured.time is None:
         return solution
-    for _ in range(_REWEIGHTINGS):
-        weights = _estimate_weights(solution, weights, measured, initial)
-        misfit = _peak_residuals(prediction, measured, weights)
+    for _ in range(_REWEIGHTINGS):  # rotations and times are weighted by their noise
+        rotations, times = _by_kind(solution.residuals, measured)
+        squares = np.array([float(rotations @ rotations), float(times @ times)])
+        estimated = np.sqrt(squares / _degrees_of_freedom(solution, measured)) * noise
+        noise = np.maximum(estimated, _MIN_NOISE / _INITIAL_NOISE * initial)
+        misfit = _peak_residuals(prediction, measured, noise)
         solution = minimize(misfit, with_starts(unknowns, solution.values))
-    return replace(solution, degrees_of_freedom=min(_degrees_of_freedom(solution, measured)))
+    freedom = float(_degrees_of_freedom(solution, measured).min())
+    return replace(solution, degrees_of_freedom=freedom)
 
 
 def _fit_roughly(residuals: Callable[[Array], Array], unknowns: Sequence[Unknown]) -> Solution:
@@ -226,51 +217,36 @@ def _fit_roughly(residuals: Callable[[Array], Array], unknowns: Sequence[Unknown
     return minimize(residuals, with_starts(unknowns, values), tolerance=_ROUGH_TOLERANCE)
 
 
-def _initial_weights(measured: MeasuredPeaks) -> Weights:
+def _initial_noise(measured: MeasuredPeaks) -> Array:
+    """Return the noise of rotations [rad] and of times [s] that is assumed at first."""
     mean_interval = 1.0
     if measured.time is not None:
         mean_interval = float(np.mean(np.diff(measured.time[np.isfinite(measured.time)])))
-    return Weights(
-        _INITIAL_NOISE * float(np.max(np.abs(measured.rotation))), _INITIAL_NOISE * mean_interval
-    )
+    return _INITIAL_NOISE * np.array([np.max(np.abs(measured.rotation)), mean_interval])
 
 
 def _peak_residuals(
-    prediction: Prediction, measured: MeasuredPeaks, weights: Weights
+    prediction: Prediction, measured: MeasuredPeaks, noise: Array
 ) -> Callable[[Array], Array]:
-    """Return the weighted residuals of the peaks as a function of the unknowns."""
+    """Return the residuals of the peaks over their noise as a function of the unknowns."""
 
     def misfit(values: Array) -> Array:
         times, rotation = prediction.peaks(values, measured)
-        rotation_residuals = (rotation - measured.rotation) / weights.rotation
+        rotation_residuals = (rotation - measured.rotation) / noise[0]
         if measured.time is None:
             return rotation_residuals
         known = np.isfinite(measured.time)
-        return np.concatenate([rotation_residuals, (times - measured.time)[known] / weights.time])
+        return np.concatenate([rotation_residuals, (times - measured.time)[known] / noise[1]])
 
     return misfit
 
 
-def _estimate_weights(
-    solution: Solution, weights: Weights, measured: MeasuredPeaks, initial: Weights
-) -> Weights:
-    """Estimate the noise of rotations and of times from their residuals."""
-    count = measured.rotation.size
-    least = _MIN_NOISE / _INITIAL_NOISE
-    kinds = solution.residuals[:count], solution.residuals[count:]
-    rotation, time = (
-        math.sqrt(float(of @ of) / freedom)
-        for of, freedom in zip(kinds, _degrees_of_freedom(solution, measured), strict=True)
-    )
-    return Weights(
-        max(rotation * weights.rotation, least * initial.rotation),
-        max(time * weights.time, least * initial.time),
-    )
+def _by_kind(values: Array, measured: MeasuredPeaks) -> tuple[Array, Array]:
+    """Part values of all residuals into those of rotations and of times."""
+    return values[: measured.rotation.size], values[measured.rotation.size :]
 
 
-def _degrees_of_freedom(solution: Solution, measured: MeasuredPeaks) -> tuple[float, float]:
+def _degrees_of_freedom(solution: Solution, measured: MeasuredPeaks) -> Array:
     """Return the degrees of freedom of rotations and of times, at least 1."""
-    leverages, count = solution.leverages(), measured.rotation.size
-    kinds = leverages[:count], leverages[count:]
-    rotation, time = (max(1.0, of.size - float(np.sum(of))) for of in kinds)
-    return rotation, time
+    kinds = _by_kind(solution.leverages(), measured)
+    return np.array([max(1.0, of.size - float(np.sum(of))) for of in kinds])

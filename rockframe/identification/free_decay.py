@@ -1,14 +1,24 @@
-"""Identification of the parameters of a system from a free-decay test."""
+"""Identification of the parameters of a system from a free-decay test, and its dataset."""
 
-from collections.abc import Sequence
-from typing import Final
+import math
+from collections.abc import Iterator, Mapping, Sequence
+from functools import partial
+from typing import Any, Final
 
+import numpy as np
 import pandas as pd
 import xarray as xr
 
 from rockframe.arguments import checked_choice, checked_list
-from rockframe.errors import ComponentError, short_repr
-from rockframe.identification.fitting import fit_history, fit_peaks
+from rockframe.errors import ComponentError, ModelWarning, short_repr, warn
+from rockframe.identification.fitting import (
+    MAX_EVALUATIONS,
+    Solution,
+    Uncertainty,
+    fit_history,
+    fit_peaks,
+    uncertainty_of,
+)
 from rockframe.identification.measured import (
     OWNER,
     History,
@@ -19,14 +29,15 @@ from rockframe.identification.measured import (
     read_peaks,
     swings_of,
 )
-from rockframe.identification.prediction import Prediction, start_values
-from rockframe.identification.report import fit_dataset
-from rockframe.identification.unknowns import Circumstance, TrialSystems
+from rockframe.identification.prediction import Circumstance, Prediction, TrialSystems, start_values
+from rockframe.results.schema import build_dataset
+from rockframe.results.variables.studies import FitStatus
+from rockframe.signals.arrays import Array
 from rockframe.simulation.system import System, check_system
 from rockframe.solve.accuracy import AccuracyLevel, accuracy_of
 from rockframe.suggestions import with_hints
 from rockframe.system.options import AccuracyLike
-from rockframe.units import Condition, QuantityLike, RatioLike, angle_words, to_ratio
+from rockframe.units import Condition, QuantityLike, RatioLike, angle_words, degrees_text, to_ratio
 
 _CONFIDENCE: Final = Condition("above 0 and below 1", lambda value: 0.0 < value < 1.0)
 
@@ -193,13 +204,166 @@ def _read_circumstances(
     if isinstance(data, MeasuredPeaks) and data.signed:
         circumstances.append(Circumstance.GAUGE_OFFSET)
     listed = checked_list(values, owner=OWNER, name="circumstances", of="names")
-    names = [
-        checked_choice(Circumstance, circumstance, owner=OWNER, name="circumstances")
-        for circumstance in listed
-    ]
+    read = partial(checked_choice, Circumstance, owner=OWNER, name="circumstances")
+    names = [read(name) for name in listed]
     for name in names:
         if name not in circumstances:
             needed = "times" if name is Circumstance.RELEASE_TIME else "their signs"
             msg = f"{OWNER}: {str(name)!r} cannot be found from peaks without {needed}"
             raise ComponentError(msg)
     return tuple(name for name in Circumstance if name in names)
+
+
+_HIGH_AUTOCORRELATION: Final = 0.3
+"""Autocorrelation of residuals above which they do not count as independent."""
+_CHANCE_DEVIATIONS: Final = 3.0
+"""Largest autocorrelation of n independent residuals, in standard deviations of 1 / sqrt(n)."""
+_ROUNDING_SHARE: Final = 1e-5
+"""Share of the initial rotation below which residuals are rounding and no noise."""
+_HIGH_CORRELATION: Final = 0.98
+"""Correlation above which the data hardly separate two unknowns."""
+
+
+def fit_verdict(
+    values: Mapping[str, Any], names: Sequence[str], confidence: float, half_width: float
+) -> str:
+    """Return the result of a fit as a sentence."""
+    fitted = zip(names, values["fitted_value"], values["standard_error"], strict=True)
+    results = ", ".join(
+        f"{name.replace('_', ' ')} {_with_error(value, half_width * error)}"
+        for name, value, error in fitted
+    )
+    history = "measured_rotation" in values
+    data = values["measured_rotation" if history else "measured_peak_rotation"]
+    residual = degrees_text(float(values["rotation_rms_residual"]), 2)
+    return (
+        f"{results[0].upper()}{results[1:]} ({100.0 * confidence:g} %); residual "
+        f"{residual} (root mean square of {len(data)} {'samples' if history else 'peaks'})."
+    )
+
+
+def cautions_of(
+    names: Sequence[str], solution: Solution, uncertainty: Uncertainty, values: Mapping[str, Any]
+) -> Iterator[str]:
+    """Return the reasons for which values or their errors may be wrong, as clauses."""
+    if solution.status == FitStatus.TRIAL_LIMIT:
+        yield f"the fit was given up after {MAX_EVALUATIONS} trials"
+    for name, value, bound in zip(names, solution.values, solution.at_bound, strict=True):
+        if bound:
+            yield f"{name} stands at its bound, {value:.6g}; its standard error means little there"
+    undetermined = [names[k] for k in np.flatnonzero(np.isnan(uncertainty.standard_error)).tolist()]
+    if undetermined:
+        yield (
+            f"the test does not tell {' and '.join(undetermined)}: another value, or other values "
+            "together, would give the same rotation"
+        )
+    close = np.argwhere(np.triu(np.abs(uncertainty.correlation) > _HIGH_CORRELATION, 1))
+    for first, second in close:
+        yield (
+            f"{names[first]} and {names[second]} can hardly be told apart, with a correlation of "
+            f"{uncertainty.correlation[first, second]:.3f}"
+        )
+    dependence = float(values["residual_autocorrelation"])
+    noise = float(values["rotation_rms_residual"])
+    chance = _CHANCE_DEVIATIONS / math.sqrt(solution.residuals.size)
+    rounding = _ROUNDING_SHARE * abs(float(values["initial_rotation"]))
+    if dependence > max(_HIGH_AUTOCORRELATION, chance) and noise > rounding:
+        yield (
+            f"each residual follows the one before, with a correlation of {dependence:.2f}: the "
+            "system lacks something that the test shows, or the signal was smoothed, and the true "
+            "errors are greater than the standard errors"
+        )
+
+
+def _with_error(value: float, error: float) -> str:
+    """Write a value and its error, both to two digits of the error."""
+    if not math.isfinite(error):
+        return f"{value:.4g} +- unknown"
+    digits = 6 if error <= 0.0 else min(max(1 - math.floor(math.log10(error)), 0), 12)
+    return f"{value:.{digits}f} +- {error:.{digits}f}"
+
+
+def fit_dataset(
+    prediction: Prediction,
+    measured: History | MeasuredPeaks,
+    solution: Solution,
+    confidence: float,
+    accuracy: str,
+) -> xr.Dataset:
+    """Return the results of a fit as a labelled dataset, and warn of reasons for doubt."""
+    names, parameters = list(prediction.names), prediction.trials.parameters
+    uncertainty = uncertainty_of(solution, confidence)
+    estimated = prediction.values(solution.values)
+    error = dict(zip(names, uncertainty.standard_error.tolist(), strict=True))
+    value = np.array([estimated[name] for name in parameters])
+    spread = np.array([error[name] for name in parameters])
+    values: dict[str, Any] = {
+        "fitted_value": value,
+        "standard_error": spread,
+        "lower_confidence_bound": value - uncertainty.half_width * spread,
+        "upper_confidence_bound": value + uncertainty.half_width * spread,
+        "start_value": np.array([place.start for place in parameters.values()]),
+        **{str(name): estimated[name] for name in Circumstance},
+        **{f"{name}_error": error.get(name, math.nan) for name in Circumstance},
+        "correlation": uncertainty.correlation,
+        "fit_status": solution.status,
+        "trial_count": solution.evaluations,
+        **_measured_and_fitted(prediction, measured, solution.values),
+    }
+    cautions = list(cautions_of(names, solution, uncertainty, values))
+    for caution in cautions:
+        warn(f"{OWNER}: {caution}", ModelWarning)
+    fitted = prediction.trials.system({name: estimated[name] for name in parameters})
+    attributes: dict[str, str | float | int] = {
+        "verdict": fit_verdict(values, list(parameters), confidence, uncertainty.half_width),
+        "confidence": confidence,
+        "model": fitted.setting.model,
+        "model_description": fitted.describe(),
+        "accuracy": accuracy,
+        "motion": "none",
+        "system_json": fitted.assembly.json,
+        **({"cautions": "; ".join(cautions)} if cautions else {}),
+    }
+    dataset = build_dataset(
+        values, attributes, title="Free-decay test", source="least squares on repeated runs"
+    ).assign_coords(
+        parameter=("parameter", list(parameters), {"long_name": "parameter"}),
+        unknown=("unknown", names, {"long_name": "unknown of the fit"}),
+        other_unknown=("other_unknown", names, {"long_name": "other unknown of the fit"}),
+    )
+    if "time" in dataset:
+        dataset["time"].attrs["long_name"] = "time of the record"
+    return dataset
+
+
+def _measured_and_fitted(
+    prediction: Prediction, measured: History | MeasuredPeaks, estimates: Array
+) -> Mapping[str, Array | float]:
+    """Return measured and fitted values with their residuals, by their names in the schema."""
+    of_times: dict[str, Array | float] = {}
+    if isinstance(measured, History):
+        kind, fitted = "rotation", prediction.history(estimates, measured)
+        of_times["time"] = measured.time
+    else:
+        kind, (times, fitted) = "peak_rotation", prediction.peaks(estimates, measured)
+        if measured.time is not None:
+            of_times = {
+                "measured_peak_time": measured.time,
+                "fitted_peak_time": times,
+                "peak_time_residual": measured.time - times,
+                "time_rms_residual": _rms(measured.time - times),
+            }
+    residual = measured.rotation - fitted
+    total, following = float(residual @ residual), float(residual[1:] @ residual[:-1])
+    return {
+        f"measured_{kind}": measured.rotation,
+        f"fitted_{kind}": fitted,
+        f"{kind}_residual": residual,
+        "rotation_rms_residual": _rms(residual),
+        "residual_autocorrelation": following / total if total > 0.0 else 0.0,
+        **of_times,
+    }
+
+
+def _rms(residual: Array) -> float:
+    return math.sqrt(float(np.mean(residual**2)))

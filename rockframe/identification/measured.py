@@ -24,6 +24,7 @@ _PEAKS: Final = (
     "write peaks=([6.0, 5.2, 4.6], 'deg'), or with their times peaks=((times, 's'), "
     "(rotations, 'deg'))"
 )
+_UNIT_IN_NAME: Final = re.compile(r".*\[(.+)\]\s*")
 
 
 @dataclass(frozen=True)
@@ -131,26 +132,18 @@ def check_below_overturning(measured: History | MeasuredPeaks, angles: Overturni
 
 def _pair_of_arrays(value: object) -> tuple[object, object] | None:
     """Return the two items of a pair of arrays with units, or None of anything else."""
-    if isinstance(value, pd.DataFrame):
-        return _pair_of_columns(value)
+    if isinstance(value, pd.DataFrame):  # with the units in the names of its columns
+        units = [_UNIT_IN_NAME.fullmatch(str(name)) for name in value.columns]
+        if len(units) != 2 or units[0] is None or units[1] is None:
+            return None
+        time, rotation = (value.iloc[:, number].to_numpy() for number in range(2))
+        return (time, units[0][1]), (rotation, units[1][1])
     if not isinstance(value, tuple | list):
         return None
     items = cast("tuple[object, ...]", value)
     if len(items) != 2 or any(isinstance(item, str | float | int) for item in items):
         return None
     return items[0], items[1]
-
-
-_UNIT_IN_NAME: Final = re.compile(r".*\[(.+)\]\s*")
-
-
-def _pair_of_columns(frame: pd.DataFrame) -> tuple[object, object] | None:
-    """Return both columns of a DataFrame, with the units in their names."""
-    units = [_UNIT_IN_NAME.fullmatch(str(name)) for name in frame.columns]
-    if len(units) != 2 or units[0] is None or units[1] is None:
-        return None
-    time, rotation = (frame.iloc[:, number].to_numpy() for number in range(2))
-    return (time, units[0][1]), (rotation, units[1][1])
 
 
 def _read_array(value: object, measure: Measure, name: str) -> Array:
@@ -237,7 +230,10 @@ class Swings:
 def swings_of(history: History) -> Swings:
     """Find the swings of a measured history."""
     time, rotation = history.time, history.rotation
-    offset = _offset(rotation)
+    first = float(np.median(rotation[:3]))
+    # the offset is the median after the rotation first falls below half its initial value
+    decayed = np.flatnonzero(rotation * np.sign(first) < 0.5 * abs(first))
+    offset = float(np.median(rotation[decayed[0] :])) if decayed.size else 0.0
     swing = rotation - offset
     first = float(np.median(swing[:3]))
     side = np.where(np.abs(swing) > _MIN_SWING * abs(first), np.sign(swing), 0.0)
@@ -260,19 +256,18 @@ def swings_of(history: History) -> Swings:
         when, size = _peak_of_swing(time[inside], swing[inside])
         times.append(when)
         sizes.append(size + offset)
-    rotation = np.array(sizes)
-    return Swings(
-        MeasuredPeaks(rotation, np.sign(rotation - offset), np.array(times)), crossing, offset
-    )
+    peaks = np.array(sizes)
+    measured = MeasuredPeaks(peaks, np.sign(peaks - offset), np.array(times))
+    return Swings(measured, crossing, offset)
 
 
 def restitution_of(
     peaks: Array, theta: Array, frequency_ratio: Array, *, small_rotation: bool
 ) -> float:
-    """Estimate the coefficient of restitution from the decay of peaks on rigid ground.
+    """Estimate restitution from the decay of peaks on rigid ground, :eq:`eq-rigid-decay`.
 
-    The estimate is by :eq:`eq-rigid-decay`. `theta` is the overturning angle on the side of each
-    peak, and `frequency_ratio` is p^2 about the corner on that side over p^2 about the right one.
+    `theta` is the overturning angle on the side of each peak, and `frequency_ratio` is p^2 about
+    the corner on that side over p^2 about the right one.
     """
     size = np.clip(np.abs(peaks), 1e-9 * theta, theta)
     if small_rotation:
@@ -283,13 +278,6 @@ def restitution_of(
     weights = energy / np.maximum(slope, 1e-3 * theta)
     gradient = np.polyfit(np.arange(size.size), np.log(frequency_ratio * energy), 1, w=weights)[0]
     return float(math.exp(0.5 * gradient))
-
-
-def _offset(rotation: Array) -> float:
-    """Return the median of the rotation after it first falls below half its initial value."""
-    first = float(np.median(rotation[:3]))
-    decayed = np.flatnonzero(rotation * np.sign(first) < 0.5 * abs(first))
-    return float(np.median(rotation[decayed[0] :])) if decayed.size else 0.0
 
 
 def _peak_of_swing(time: Array, swing: Array) -> tuple[float, float]:

@@ -23,7 +23,7 @@ from rockframe.plot._panels import Axes, AxesLike, Panels, Sheet, make_sheet, ma
 from rockframe.results.outcome import overturns
 from rockframe.results.variables.analyses import FragilityStatus
 from rockframe.studies.fragility.words import measures_of, verdict_of_fragility
-from rockframe.studies.sweeps.words import cases_verdict
+from rockframe.studies.sweeps.labelling import cases_verdict
 from rockframe.units.display import UnitsLike, with_superscripts
 
 

@@ -26,7 +26,7 @@ from rockframe.plot._checks import draws, figure_data, mismatch_message
 from rockframe.plot._panels import Axes, AxesLike, Panels, make_sheet, make_single_panel
 from rockframe.results.outcome import overturns
 from rockframe.results.variables.studies import Outcome
-from rockframe.studies.sweeps.words import cases_verdict
+from rockframe.studies.sweeps.labelling import cases_verdict
 from rockframe.units import ANGLE
 from rockframe.units.display import UnitsLike, display_units
 

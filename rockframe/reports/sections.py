@@ -33,7 +33,7 @@ from rockframe.simulation.certify.certificate import NEAR_WORDS
 from rockframe.simulation.provenance import motion_words
 from rockframe.simulation.run import NONE
 from rockframe.simulation.system import System
-from rockframe.studies.sweeps.words import slips_of_cases
+from rockframe.studies.sweeps.labelling import slips_of_cases
 from rockframe.units import ACCELERATION, Unit, to_si
 from rockframe.units.display import DisplayUnits, with_superscripts
 from rockframe.version import __version__

@@ -29,7 +29,7 @@ from rockframe.simulation.system import System
 from rockframe.studies import case, fragility
 from rockframe.studies.sweeps.axes import Changes
 from rockframe.studies.sweeps.case import NOT_GIVEN, system_of_case
-from rockframe.studies.sweeps.words import cases_verdict, slips_of_cases
+from rockframe.studies.sweeps.labelling import cases_verdict, slips_of_cases
 from rockframe.units.display import DisplayUnits, with_superscripts
 
 

@@ -15,15 +15,15 @@ from rockframe.results.variables.studies import MOTION
 from rockframe.results.variables.variable import unit_of, unit_suffix_of
 from rockframe.signals.arrays import AnyArray
 from rockframe.studies.cloud_fit import MIN_RUNS, Cloud, curve_of_level
-from rockframe.studies.confidence import read_confidence
-from rockframe.studies.fragility.labelling import BOUND_SUFFIXES, with_stripes
+from rockframe.studies.confidence import BOUND_SUFFIXES, read_confidence
+from rockframe.studies.fragility.labelling import with_stripes
 from rockframe.studies.fragility.trials import (
     attributes_of_system,
     check_one_structure,
     flatten_like,
     motion_numbers,
 )
-from rockframe.studies.fragility.words import POOLED_ATTRIBUTE
+from rockframe.studies.fragility.words import pooled_attribute
 from rockframe.studies.intensities import (
     PERIOD_ATTRIBUTE,
     PeriodLike,
@@ -141,11 +141,8 @@ def cloud_analysis(
     pooled_axes = check_one_structure(runs, pooled, [intensity], owner=_OWNER)
     measure = measure_of_runs(runs, intensity, period, motions, owner=_OWNER)
     values = scalar_of(runs, response, label, owner=_OWNER)
-    requested = [
-        _read_response(limit, values, _OWNER, "limits")
-        for limit in listed_limits(limits, owner=_OWNER)
-        if limit != OVERTURNING
-    ]
+    listed = [limit for limit in listed_limits(limits, owner=_OWNER) if limit != OVERTURNING]
+    requested = [_read_response(limit, values, _OWNER, "limits") for limit in listed]
     cloud = fit_cloud(runs, measure, values, least=least, owner=_OWNER)
     words = " ".join(filter(None, [response.replace("_", " "), label]))
     named = {f"{words} {value:g}{unit_suffix_of(values.attrs)}": value for value in requested}
@@ -158,7 +155,7 @@ def cloud_analysis(
         **period_attribute(runs, [intensity], period, owner=_OWNER),
         "intensity": str(measure.name),
         "response": response if label is None else f"{response} {label}",
-        **({POOLED_ATTRIBUTE: ", ".join(pooled_axes)} if pooled_axes else {}),
+        **pooled_attribute(pooled_axes),
     }
     return dataset.assign_attrs(verdict=_sentence(dataset, cloud.motions_repeat))
 
@@ -185,15 +182,11 @@ def fit_cloud(
     )
     response = np.abs(response)
     response = np.where(overturned == 1.0, np.inf, np.where(response < floor, 0.0, response))
-    known = (
-        ~np.isnan(overturned) & (intensities > 0.0) & np.isfinite(intensities) & ~np.isnan(response)
-    )
-    if known.sum() < MIN_RUNS:
-        count = int(known.sum())
-        msg = (
-            f"{owner}: {count} run{'s have' if count != 1 else ' has'} a verdict and an intensity; "
-            f"{MIN_RUNS} are needed"
-        )
+    known = ~np.isnan(overturned) & ~np.isnan(response)
+    known &= (intensities > 0.0) & np.isfinite(intensities)
+    if (count := int(known.sum())) < MIN_RUNS:
+        have = "1 run has" if count == 1 else f"{count} runs have"
+        msg = f"{owner}: {have} a verdict and an intensity; {MIN_RUNS} are needed"
         raise StudyError(msg)
     used = motion_numbers(overturns(runs))[known]
     cloud = Cloud.fit(np.log(intensities[known]), response[known])
@@ -246,10 +239,8 @@ def _cloud_dataset(
     dataset = with_variables(dataset, shares, over=(*over, name))
     dataset = with_labels(dataset, {name: (name, np.exp(logs), measure.attrs)})
     dataset = with_variables(dataset, {"limit_state": np.array(list(levels), dtype=object)})
-    counted = [
-        (np.exp(cloud.logs)[:, None], (cloud.responses >= level).astype(np.float64))
-        for level in levels.values()
-    ]
+    beyond = [(cloud.responses >= level).astype(np.float64) for level in levels.values()]
+    counted = [(np.exp(cloud.logs)[:, None], verdict) for verdict in beyond]
     return with_stripes(dataset, counted, over, confidence, measure.attrs)
 
 
@@ -261,14 +252,12 @@ def _sentence(dataset: xr.Dataset, motions_repeat: bool) -> str:
     response = str(dataset.attrs["response"]).replace("_", " ")
     text = f"Of {count} runs {overturned} overturned"
     text += f" and {resting} show no {response}" if resting else ""
-    if math.isnan(float(dataset["regression_slope"])):
+    slope, dispersion = float(dataset["regression_slope"]), float(dataset["residual_dispersion"])
+    if math.isnan(slope):
         text += "; those between are too few, or of one intensity, for a line"
     else:
-        text += (
-            f"; the {response} of the others grows with "
-            f"power {float(dataset['regression_slope']):.3g} of {words}, dispersion "
-            f"{float(dataset['residual_dispersion']):.3g}"
-        )
+        text += f"; the {response} of the others grows with power {slope:.3g} of {words}, "
+        text += f"dispersion {dispersion:.3g}"
     left_out = int(dataset["left_out_count"].max())
     text += f"; {left_out} are left out, without a verdict or an intensity" if left_out else ""
     text += "; no bounds, for motions were run more than once" if motions_repeat else ""

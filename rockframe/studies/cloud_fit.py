@@ -74,17 +74,6 @@ class Logistic:
 
     def probability(self, logs: Array) -> Array:
         """Return the probability at logarithms of intensities."""
-        return self._evaluate(self.coefficients, logs)
-
-    def draw_curves(self, logs: Array, rng: np.random.Generator, count: int) -> Array:
-        """Draw curves from the posterior of the coefficients; shape (count, intensities)."""
-        if self.status is not FragilityStatus.FITTED:
-            return np.broadcast_to(self.probability(logs), (count, len(logs)))
-        root = np.linalg.cholesky(self.covariance)
-        drawn = self.coefficients + rng.standard_normal((count, 2)) @ root.T
-        return self._evaluate(drawn.T[:, :, None], logs)
-
-    def _evaluate(self, coefficients: Array, logs: Array) -> Array:
         from scipy.special import expit
 
         if self.status is FragilityStatus.NONE_EXCEEDED:
@@ -92,8 +81,18 @@ class Logistic:
         if self.status is FragilityStatus.ALL_EXCEEDED:
             return np.ones(np.shape(logs))
         if self.status is FragilityStatus.SEPARATED:
-            return (np.asarray(logs) > coefficients[0]).astype(np.float64)
-        return np.asarray(expit(coefficients[0] + coefficients[1] * logs))
+            return (np.asarray(logs) > self.coefficients[0]).astype(np.float64)
+        return np.asarray(expit(self.coefficients[0] + self.coefficients[1] * logs))
+
+    def draw_curves(self, logs: Array, rng: np.random.Generator, count: int) -> Array:
+        """Draw curves from the posterior of the coefficients; shape (count, intensities)."""
+        from scipy.special import expit
+
+        if self.status is not FragilityStatus.FITTED:
+            return np.broadcast_to(self.probability(logs), (count, len(logs)))
+        root = np.linalg.cholesky(self.covariance)
+        drawn = self.coefficients + rng.standard_normal((count, 2)) @ root.T
+        return np.asarray(expit(drawn[:, :1] + drawn[:, 1:] * logs))
 
 
 def fit_logistic(logs: Array, verdict: AnyArray) -> Logistic:
@@ -188,9 +187,9 @@ class Cloud:
         overturning, line = self.overturning.probability(logs), self.regression
         if math.isinf(level):
             return overturning
-        coefficients = line.intercept, line.slope, line.dispersion
         moving = self.moving.probability(logs)
-        return _exceedance_probability(overturning, moving, coefficients, logs, level)
+        of_line = line.intercept, line.slope, line.dispersion
+        return _exceedance_probability(overturning, moving, of_line, logs, level)
 
     def draw_curves(self, logs: Array, level: float, rng: np.random.Generator, count: int) -> Array:
         """Draw fragility curves from the posterior; shape (count, intensities)."""
@@ -198,10 +197,8 @@ class Cloud:
         if self.regression is NO_LINE or math.isinf(level):
             return overturning
         moving = self.moving.draw_curves(logs, rng, count)
-        coefficients = [
-            coefficient[:, None] for coefficient in self.regression.draw_coefficients(rng, count)
-        ]
-        return _exceedance_probability(overturning, moving, coefficients, logs, level)
+        of_line = [drawn[:, None] for drawn in self.regression.draw_coefficients(rng, count)]
+        return _exceedance_probability(overturning, moving, of_line, logs, level)
 
 
 def _exceedance_probability(
@@ -219,10 +216,8 @@ def curve_of_level(
     cloud: Cloud, level: float, logs: Array, confidence: float, seed: int
 ) -> tuple[FragilityStatus, Array, Array, Array]:
     """Return status, probabilities at intensities, median and dispersion, each with its bounds."""
-    status = _status(cloud, level)
-    wide = np.linspace(
-        cloud.logs.min() - _SEARCH_MARGIN, cloud.logs.max() + _SEARCH_MARGIN, _SEARCH_POINTS
-    )
+    status, (least, most) = _status(cloud, level), (cloud.logs.min(), cloud.logs.max())
+    wide = np.linspace(least - _SEARCH_MARGIN, most + _SEARCH_MARGIN, _SEARCH_POINTS)
     middle, spread = _median_dispersion(cloud.probabilities(wide, level)[None], wide)
     points = np.full((3, len(logs)), np.nan)
     points[0] = cloud.probabilities(logs, level)
@@ -249,9 +244,9 @@ def curve_of_level(
 def _status(cloud: Cloud, level: float) -> FragilityStatus:
     """Return whether a limit state has a fragility, or why not."""
     if math.isinf(level):
-        rises = cloud.overturning.status is not FragilityStatus.FITTED
-        rises = rises or cloud.overturning.coefficients[1] > 0.0
-        return cloud.overturning.status if rises else FragilityStatus.NOT_RISING
+        status = cloud.overturning.status
+        falls = status is FragilityStatus.FITTED and not cloud.overturning.coefficients[1] > 0.0
+        return FragilityStatus.NOT_RISING if falls else status
     if cloud.regression is NO_LINE:
         return FragilityStatus.NO_TRIALS
     parted = FragilityStatus.NOT_RISING in (cloud.overturning.status, cloud.moving.status)

@@ -65,9 +65,7 @@ def subset_levels(
     """Sample level by level, until a sufficient share of the samples exceeds the limit.
 
     Each level has chains, :eq:`eq-conditional-candidate`, that start at the samples beyond the last
-    threshold. The threshold of the last level is the limit, exceeded or not. The last level is the
-    one in which the share is reached, the last that is allowed, or one whose samples all have the
-    same demand.
+    threshold. That of the last level is the limit, exceeded or not.
     """
     scores = rng.standard_normal((count, size))
     demands = demand("level 01", scores)
@@ -91,37 +89,30 @@ def subset_levels(
             scores, demands, origins = states[-1]
             noise = rng.standard_normal(scores.shape)
             candidates = math.sqrt(1.0 - step**2) * scores + step * noise
-            candidate_demands = demand(
-                f"level {number + 1:02d} step {number_of_step:02d}", candidates
-            )
-            accepted = candidate_demands >= threshold
-            left_out += int(np.isnan(candidate_demands).sum())
+            part = f"level {number + 1:02d} step {number_of_step:02d}"
+            found = demand(part, candidates)
+            accepted = found >= threshold
+            left_out += int(np.isnan(found).sum())
             states.append((
                 np.where(accepted[:, None], candidates, scores),
-                np.where(accepted, candidate_demands, demands),
+                np.where(accepted, found, demands),
                 np.where(accepted, total_runs + np.arange(chains), origins),
             ))  # fmt: skip
             total_runs += chains
             acceptance_rates.append(float(accepted.mean()))
-            step = min(
-                1.0,
-                step
-                * math.exp((acceptance_rates[-1] - _TARGET_ACCEPTANCE) / math.sqrt(number_of_step)),
-            )
+            excess = acceptance_rates[-1] - _TARGET_ACCEPTANCE
+            step = min(1.0, step * math.exp(excess / math.sqrt(number_of_step)))
         scores, demands, origins = map(np.concatenate, zip(*states, strict=True))
         families = np.tile(families[seeds], length)
         acceptance = float(np.mean(acceptance_rates))
 
 
 def _threshold(demands: Array, share: float, limit: float) -> float:
-    """Return the demand that a share of the samples reaches, halfway between two of them.
-
-    Equal demands are not separated; the possible share with the nearest logarithm is used. If all
-    demands are equal, the limit is returned.
-    """
+    """Return the demand that a share of the samples reaches, halfway between two of them."""
     values, counts = np.unique(demands[~np.isnan(demands)], return_counts=True)
     if len(values) < 2:
         return limit
+    # equal demands are not separated: the possible share with the nearest logarithm is used
     above = counts[::-1].cumsum()[::-1][1:]  # samples from the second value on, the third, ...
     place = int(np.argmin(np.abs(np.log(above / (share * counts.sum())))))
     below, upper = float(values[place]), float(values[place + 1])
@@ -148,27 +139,20 @@ def _family_variance(levels: Sequence[Level]) -> float:
 
 
 def subset_variation(levels: Sequence[Level]) -> float:
-    """Return the coefficient of variation of the probability, :eq:`eq-subset-variation` [1].
-
-    For a single level it is that of a binomial share.
-    """
+    """Return the coefficient of variation of the probability, :eq:`eq-subset-variation` [1]."""
     if not subset_probability(levels) > 0.0:
         return math.inf
     squared = _family_variance(levels)
-    if len(levels) > 1:
+    if len(levels) > 1:  # that of a single level is that of a binomial share
         squared = squared / (1.0 - squared) if squared < 1.0 else math.inf
     return math.sqrt(squared)
 
 
 def subset_bounds(levels: Sequence[Level], confidence: float) -> tuple[float, float]:
-    """Return bounds of the probability, :eq:`eq-subset-bounds` [1].
-
-    For a single level they are those of independent cases. Where no sample exceeds the last
-    threshold the upper bound comes from the probability of the threshold before.
-    """
+    """Return bounds of the probability, :eq:`eq-subset-bounds` [1]."""
     from scipy.stats import t
 
-    if len(levels) == 1:
+    if len(levels) == 1:  # of independent cases
         first = levels[0]
         exceeding = np.array(first.exceeds.sum())
         lower, upper = clopper_pearson(exceeding, np.array(first.known_count), confidence)
@@ -184,15 +168,12 @@ def subset_bounds(levels: Sequence[Level], confidence: float) -> tuple[float, fl
 
 
 def sample_weights(levels: Sequence[Level]) -> list[Array]:
-    """Return the probability that each sample represents, :eq:`eq-subset-weights` [1].
-
-    Samples beyond a threshold have none: the next level represents them.
-    """
+    """Return the probability that each sample represents, :eq:`eq-subset-weights` [1]."""
     weights: list[Array] = []
     probability = 1.0
     for number, level in enumerate(levels, start=1):
         is_counted = ~np.isnan(level.demands)
-        if number < len(levels):
+        if number < len(levels):  # the next level represents those beyond the threshold
             is_counted &= ~level.exceeds
         weights.append(np.where(is_counted, probability / max(level.known_count, 1), 0.0))
         probability *= level.share

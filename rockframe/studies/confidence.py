@@ -9,6 +9,8 @@ from rockframe.arguments import checked_list
 from rockframe.signals.arrays import AnyArray, Array
 from rockframe.units import Condition, to_ratio
 
+BOUND_SUFFIXES: Final = ("", "_lower_bound", "_upper_bound")
+"""Endings of the names of an estimate and of its bounds."""
 SHARE: Final = Condition("above 0 and below 1", lambda value: 0.0 < value < 1.0)
 _LEVEL: Final = Condition("from 0.5 to 0.9999", lambda value: 0.5 <= value <= 0.9999)
 

@@ -157,14 +157,12 @@ def critical_scale(
     count = checked_integer(scales, owner=_OWNER, name="scales", lowest=2, highest=MOST_RUNS)
     max_runs = checked_integer(runs, owner=_OWNER, name="runs", lowest=count, highest=MOST_RUNS)
     plan = plan_run(system.assembly, motion, outputs=None, **requested)
-    measure = None
-    if intensity is not None:
-        measure = ScaledIntensity(
-            system, motion, intensity, period=period, damping_ratio=damping_ratio, owner=_OWNER
-        )
-    elif period is not None:
+    if intensity is None and period is not None:
         msg = f"{_OWNER}: period is that of an intensity; give intensity too"
         raise ComponentError(msg)
+    measure = None if intensity is None else ScaledIntensity(
+        system, motion, intensity, period=period, damping_ratio=damping_ratio, owner=_OWNER
+    )  # fmt: skip
 
     uplift_scale = _uplift_scale(system, plan)
     least = 0.0 if math.isnan(uplift_scale) else min(uplift_scale, greatest_scale)
@@ -245,8 +243,7 @@ def _cautions(
 ) -> dict[str, str]:
     """Repeat the warnings of the run at the decisive scale; warn of runs without a verdict."""
     cautions: list[str] = []
-    undecided = [scale for scale, outcome in scan.runs.items() if outcome.overturned is None]
-    if undecided:
+    if undecided := scan.undecided:
         cautions.append(f"{_OWNER}: {unfinished_words(undecided)}")
         warn(cautions[0], SolverWarning)
     moving = [scale for scale, outcome in scan.runs.items() if outcome.in_motion]
@@ -256,10 +253,9 @@ def _cautions(
             f"{STILL_MOVING}"
         )
         warn(cautions[-1], SolverWarning)
-    decisive = critical
-    if math.isnan(critical) and has_friction_limit(system.assembly):
-        decisive = max(scan.runs)  # if none falls, it needs the most friction
-    if not math.isnan(decisive):
+    # if none falls, the largest scale needs the most friction
+    decisive = max(scan.runs) if math.isnan(critical) else critical
+    if decisive == critical or has_friction_limit(system.assembly):
         repeated = run(system.assembly, plan_at(decisive))
         cautions += filter(None, [str(repeated.attrs.get("cautions", ""))])
     return {"cautions": "; ".join(cautions)} if cautions else {}

@@ -1,19 +1,31 @@
-"""Incremental dynamic analysis: motions are scaled until limit states are exceeded."""
+"""Incremental dynamic analysis: motions are scaled until limit states are exceeded.
+
+Also the axes of analyses along scales of motions: each combination of their values is a line.
+"""
 
 import math
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Callable, Hashable, Iterable, Mapping, Sequence
+from dataclasses import dataclass
 from inspect import signature
-from typing import Any, Final, Unpack
+from types import MappingProxyType
+from typing import Any, Final, Unpack, cast
 
 import numpy as np
 import xarray as xr
 
-from rockframe.errors import ModelWarning, warn
+from rockframe.errors import (
+    ModelWarning,
+    RockframeError,
+    StudyError,
+    did_you_mean,
+    short_repr,
+    warn,
+)
 from rockframe.results.outcome import overturns
-from rockframe.results.schema import with_variables
-from rockframe.results.variables.studies import MOTION
+from rockframe.results.schema import with_labels, with_variables
+from rockframe.results.variables.studies import CASE, MOTION
 from rockframe.shared_arguments import with_shared_arguments
-from rockframe.signals.arrays import Array
+from rockframe.signals.arrays import AnyArray, Array
 from rockframe.simulation.friction_checks import share_words, slip_words
 from rockframe.simulation.system import System
 from rockframe.studies.intensities import Intensity, intensity_of_runs, measure_attributes
@@ -25,7 +37,6 @@ from rockframe.studies.limit_states import (
     limit_states,
     states_json,
 )
-from rockframe.studies.line_axes import read_line_axes
 from rockframe.studies.line_scan import (
     CAPACITY_DEFINITION,
     INTERRUPTED_ENDING,
@@ -36,12 +47,13 @@ from rockframe.studies.line_scan import (
     read_scales,
     read_width,
 )
-from rockframe.studies.sweeps.arguments import SweepArguments
+from rockframe.studies.sweeps.arguments import SWEEP_ARGUMENT_NAMES, SweepArguments
+from rockframe.studies.sweeps.axes import Axis, Changes, faults_of_values
+from rockframe.studies.sweeps.labelling import cases_verdict, slips_of_cases
 from rockframe.studies.sweeps.motions import SCALE, MotionsLike
-from rockframe.studies.sweeps.scenes import needed_motions, scene_of
-from rockframe.studies.sweeps.words import cases_verdict, slips_of_cases
+from rockframe.studies.sweeps.scenes import SweptScene, needed_motions, scene_of
 from rockframe.system.options import PointsLike
-from rockframe.units import QuantityLike, RatioLike
+from rockframe.units import QuantityLike, RatioLike, Unit
 
 _OWNER: Final = "incremental_dynamic_analysis"
 _SCALES: Final = tuple(0.1 * k for k in range(1, 41))
@@ -168,22 +180,16 @@ def incremental_dynamic_analysis(
         scales, width=width, resolution=finest, outputs=outputs, output_step=output_step
     )
     scan = line_axes.unstack(result.scan)
-    sizes = {**line_axes.sizes, MOTION: scan.sizes[MOTION]}
-    shape = (len(states), *sizes.values())
+    sizes = {"limit_state": len(states), **line_axes.sizes, MOTION: scan.sizes[MOTION]}
+    shape, over = tuple(sizes.values()), tuple(sizes)
     capacities = result.capacities(shape)
-    dataset = with_variables(
-        scan, {**capacities, **result.flips(shape)}, over=("limit_state", *sizes)
-    )
+    dataset = with_variables(scan, {**capacities, **result.flips(shape)}, over=over)
     censored = np.isinf(capacities["capacity_scale"]).sum(axis=-1)
-    dataset = with_variables(
-        dataset, {"censored_count": censored}, over=("limit_state", *line_axes.sizes)
-    )
+    dataset = with_variables(dataset, {"censored_count": censored}, over=over[:-1])
     dataset = with_variables(dataset, labels_of_states(states))
     if measure is not None:
-        dataset = dataset.assign(
-            {measure.name: intensity_of_runs(scan, measure, by_name, owner=_OWNER)}
-        )
-        dataset.attrs |= measure_attributes(measure)
+        values = intensity_of_runs(scan, measure, by_name, owner=_OWNER)
+        dataset = dataset.assign({measure.name: values}).assign_attrs(measure_attributes(measure))
     below, least = _overturned_at_least_scale(dataset), float(dataset[SCALE].min())
     if below.any():
         which = "motions" if below.ndim == 1 else "lines"
@@ -217,10 +223,8 @@ def verdict_of_analysis(dataset: xr.Dataset) -> str:
     is_complete = {"limit_state", MOTION} <= set(capacity.dims) and SCALE in dataset.dims
     if not is_complete or str(capacity["limit_state"][-1].item()) != OVERTURNING:
         return cases_verdict(dataset)
-    structures = {
-        str(dim): size for dim, size in capacity.sizes.items() if dim not in ("limit_state", MOTION)
-    }
-    return _sentence(dataset, structures)
+    lines = capacity.sizes.items()
+    return _sentence(dataset, {str(n): k for n, k in lines if n not in ("limit_state", MOTION)})
 
 
 def _sentence(dataset: xr.Dataset, structures: Mapping[str, int]) -> str:
@@ -250,8 +254,90 @@ def _sentence(dataset: xr.Dataset, structures: Mapping[str, int]) -> str:
     if missing and not interrupted:
         text += f"; {missing} of {dataset['status'].size} runs of the scan have no verdict"
     slides = dataset["would_slide"].to_numpy() if "would_slide" in dataset else np.empty(0)
-    if words := share_words(slides, runs="runs of the scan"):
-        text += f"; {words}"
-    if words := slip_words(slips_of_cases(dataset), runs="runs of the scan"):
-        text += f"; {words}"
+    for words, values in ((share_words, slides), (slip_words, slips_of_cases(dataset))):
+        shown = words(values, runs="runs of the scan")
+        text += f"; {shown}" if shown else ""
     return f"{text}{INTERRUPTED_ENDING if interrupted else '.'}"
+
+
+@dataclass(frozen=True, eq=False)
+class LineAxes:
+    """Axes other than the scale of the motions."""
+
+    axes: tuple[Axis, ...] = ()
+
+    @property
+    def sizes(self) -> dict[str, int]:
+        """The dimensions of the axes, in order, and their lengths."""
+        return {axis.name: len(axis.values) for axis in self.axes}
+
+    def columns(
+        self, rows: Mapping[str, tuple[AnyArray, str]] = MappingProxyType({})
+    ) -> dict[str, tuple[AnyArray, str]]:
+        """Return a table of all combinations of values for each of some rows; last axis fastest."""
+        places = np.indices(tuple(self.sizes.values()))
+        count = math.prod(self.sizes.values())
+        repeats = max((len(values) for values, _ in rows.values()), default=1)
+        table = {name: (np.repeat(values, count), unit) for name, (values, unit) in rows.items()}
+        return table | {
+            axis.name: (np.tile(axis.values[place.ravel()], repeats), axis.unit or str(Unit.ONE))
+            for axis, place in zip(self.axes, places, strict=True)
+        }
+
+    @property
+    def labels(self) -> dict[str, xr.Variable]:
+        """Their values, by their names."""
+        return {one.name: xr.Variable(one.name, one.values, one.attributes()) for one in self.axes}
+
+    def unstack(self, runs: xr.Dataset) -> xr.Dataset:
+        """Return the runs with the dimensions of the axes instead of the rows of the table."""
+        return unstack_cases(runs, self.sizes, self.labels) if self.axes else runs
+
+
+def unstack_cases(
+    runs: xr.Dataset, sizes: Mapping[str, int], labels: Mapping[str, xr.Variable]
+) -> xr.Dataset:
+    """Return a dataset with several dimensions in place of the rows of a table."""
+    variables: dict[Hashable, xr.Variable] = {}
+    for name, variable in runs.drop_vars([CASE, *labels], errors="ignore").variables.items():
+        wide = variable.unstack({CASE: dict(sizes)}) if CASE in variable.dims else variable
+        other_dims = [dim for dim in wide.dims if dim not in sizes]
+        variables[name] = wide.transpose(*(dim for dim in sizes if dim in wide.dims), *other_dims)
+    made = xr.Dataset(variables, attrs=runs.attrs)
+    made = made.set_coords([name for name in runs.coords if name in variables])
+    return with_labels(made, labels)
+
+
+def read_line_axes(
+    value: object,
+    scene: SweptScene,
+    *,
+    owner: str,
+    argument_names: Iterable[str],
+    own_axes: Sequence[Axis] = (),
+) -> LineAxes:
+    """Read the axes of an analysis; argument names are for proposals."""
+    if value is None:
+        return LineAxes()
+    if not isinstance(value, Mapping):
+        msg = f"{owner}: axes must be a mapping of names to values, got {short_repr(value)}"
+        raise StudyError(msg)
+    line_axes, faults = list[Axis](), list[str]()
+    for name, values in cast("Mapping[Any, Any]", value).items():
+        if name in SWEEP_ARGUMENT_NAMES:
+            faults.append(f"{owner} takes no {name!r}, as rf.sweep does")
+            continue
+        try:
+            line_axes.append(scene.axis(str(name), values))
+        except RockframeError as problem:
+            reasons = problem.faults if isinstance(problem, StudyError) else (str(problem),)
+            argument = did_you_mean(name, argument_names)
+            faults += [f"{why}{argument if argument not in why else ''}" for why in reasons]
+    for axis in line_axes:
+        if axis.changes is Changes.MOTION:
+            faults.append(f"axis {axis.name!r} scales the motion, as scale does; give scale alone")
+        faults += faults_of_values(axis.name, axis.values)
+    faults += scene.faults([*own_axes, *line_axes])
+    if faults:
+        raise StudyError(*faults)
+    return LineAxes(tuple(line_axes))

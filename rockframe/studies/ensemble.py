@@ -11,8 +11,13 @@ from rockframe.errors import ComponentError, SchemaError, did_you_mean, short_re
 from rockframe.results.schema import build_dataset
 from rockframe.results.variables.studies import MOTION
 from rockframe.signals.arrays import Array
-from rockframe.studies.confidence import clopper_pearson, read_confidence, read_shares
-from rockframe.studies.fragility.labelling import BOUND_SUFFIXES
+from rockframe.studies.confidence import (
+    BOUND_SUFFIXES,
+    clopper_pearson,
+    read_confidence,
+    read_shares,
+)
+from rockframe.studies.fragility.trials import flatten_like
 from rockframe.studies.probability import SAMPLING_ATTRIBUTE
 from rockframe.suggestions import with_hints
 from rockframe.units import RatioLike
@@ -94,6 +99,11 @@ def ensemble_statistics(
     if not len(ordered):
         msg = f"{_OWNER}: {values.name} has no values"
         raise ComponentError(msg)
+    left_out = values.size - len(ordered)
+    missing = f"; {left_out} without a result are left out" if left_out else ""
+    bounds = f"bands of confidence {requested:g}"
+    if np.isnan(level):
+        bounds = "no bounds, for several members are of one motion"
     lower, upper = _quantile_bounds(ordered, shares, level)
     dataset = build_dataset(
         {
@@ -103,12 +113,12 @@ def ensemble_statistics(
             "quantile_value_lower_bound": lower,
             "quantile_value_upper_bound": upper,
             "member_count": len(ordered),
-            "left_out_count": values.size - len(ordered),
+            "left_out_count": left_out,
         },
         {
             "variable": str(values.name),
             "confidence": requested,
-            "verdict": _sentence(len(ordered), values.size - len(ordered), requested, level),
+            "verdict": f"{len(ordered)} members{missing}; {bounds}",
         },
         title="Statistics of an ensemble",
         source="empirical distribution",
@@ -147,20 +157,8 @@ def _members_depend(
         raise ComponentError(msg)
     if not dims or MOTION not in values.coords:
         return bool(dims)
-    names = values[MOTION].broadcast_like(values).where(values.notnull(), "").to_numpy().astype(str)
-    _, count = np.unique(names[names != ""], return_counts=True)
-    return bool(count.max(initial=0) > 1)
-
-
-def _sentence(count: int, left_out: int, requested: float, level: float) -> str:
-    """Return the verdict in words: the number of members, and the bounds."""
-    missing = f"; {left_out} without a result are left out" if left_out else ""
-    bounds = (
-        "no bounds, for several members are of one motion"
-        if np.isnan(level)
-        else f"bands of confidence {requested:g}"
-    )
-    return f"{count} members{missing}; {bounds}"
+    names = flatten_like(values[MOTION], values)[values.notnull().to_numpy().ravel()]
+    return len(set(names.tolist())) < len(names)
 
 
 def _empirical_distribution(ordered: Array, level: float) -> dict[str, Array]:

@@ -43,6 +43,16 @@ class ScaleScan:
     resolved_up_to: float
     completed: bool = True  # False after an interrupt (Ctrl-C)
 
+    @property
+    def decided(self) -> list[float]:
+        """The scales with a verdict."""
+        return [scale for scale, run in self.runs.items() if run.overturned is not None]
+
+    @property
+    def undecided(self) -> list[float]:
+        """The scales without a verdict."""
+        return [scale for scale, run in self.runs.items() if run.overturned is None]
+
     def flips(self) -> list[Flip]:
         """Return all changes of the verdict, from low to high."""
         return list(_flips(self.runs))
@@ -50,8 +60,7 @@ class ScaleScan:
     @property
     def largest_gap(self) -> float:
         """The widest gap between neighbouring scales with a verdict; NaN if fewer than two [1]."""
-        decided = [scale for scale, run in self.runs.items() if run.overturned is not None]
-        return max((far - near for near, far in pairwise(decided)), default=math.nan)
+        return max((far - near for near, far in pairwise(self.decided)), default=math.nan)
 
 
 def scan_scales(
@@ -63,14 +72,11 @@ def scan_scales(
     resolution: float = 1.0,
     may_slide: bool = False,
 ) -> ScaleScan:
-    """Scan scales, halve doubtful intervals, and narrow every change of the verdict.
-
-    Between two runs of the same verdict an even number of flips may hide. Below the least scale
-    that overturns, every interval is halved down to the resolution, the widest first, except where
-    the base does not lift: it does not lift at lower scales either, unless it may slide. Then the
-    intervals in which flips are likely are halved, below that scale and above it,
-    :func:`rockframe.simulation.certify.scan.may_change_between`.
-    """
+    """Scan scales, halve doubtful intervals, and narrow every change of the verdict."""
+    # Between two runs of the same verdict an even number of flips may hide. Below the least scale
+    # that overturns, every interval is halved down to the resolution, the widest first, except
+    # where the base does not lift: it does not lift at lower scales either, unless it may slide.
+    # Then the intervals in which flips are likely are halved, below that scale and above it.
     least, *larger = scales
     side = Side(1.0, {least: run_at(least)}, [least])
     completed = True
@@ -101,16 +107,13 @@ def _wide_intervals(
 ) -> Iterator[tuple[float, float]]:
     """Return wide intervals where the base lifts: below the least scale that overturns, or all."""
     for near, far in side.intervals():
-        if side.shown[near].overturned and not above_first:
+        verdicts = side.shown[near].overturned, side.shown[far].overturned
+        if verdicts[0] and not above_first:
             return
-        have_verdicts = None not in (side.shown[near].overturned, side.shown[far].overturned)
         if near == 0.0 and far <= resolution * side.places[-1]:
             continue  # halving towards zero would not end
-        if (
-            have_verdicts
-            and far - near > resolution * far
-            and (side.shown[far].lifted or may_slide)
-        ):
+        is_wide = None not in verdicts and far - near > resolution * far
+        if is_wide and (side.shown[far].lifted or may_slide):
             yield near, far
 
 
@@ -122,19 +125,14 @@ def _halve_suspects(side: Side, run_at: RunAtScale, max_runs: int, *, up_to_firs
         if len(side.places) >= max_runs:
             return False
         middle = 0.5 * (near + far)
-        summary = run_at(middle)
-        side.add(middle, summary)
-        if up_to_first and summary.overturned:
+        side.add(middle, run_at(middle))
+        if up_to_first and side.shown[middle].overturned:
             break  # the others lie above the least scale that overturns
     return bool(suspects)
 
 
 def _suspect_intervals(side: Side, *, up_to_first: bool) -> Iterator[tuple[float, float]]:
-    """Return the intervals in which flips may hide, from low to high.
-
-    With `up_to_first`, the interval before the first scale that overturns is included too: flips
-    may hide on both sides of the known flip.
-    """
+    """Return the intervals in which flips may hide, from low to high."""
     for number, (near, far) in enumerate(side.intervals()):
         before, after = side.shown[near].overturned, side.shown[far].overturned
         if up_to_first and before:
@@ -143,10 +141,8 @@ def _suspect_intervals(side: Side, *, up_to_first: bool) -> Iterator[tuple[float
             continue
         if _clearance(side, near, far) > 1.0 - SMALL_PEAK:
             continue
-        if before != after:
-            if up_to_first:
-                yield near, far
-        elif may_change_between(side, number):
+        # flips may hide on both sides of the first one
+        if up_to_first if before != after else may_change_between(side, number):
             yield near, far
 
 
@@ -163,14 +159,11 @@ def _bisect(side: Side, run_at: RunAtScale, flip: Flip, width: float) -> None:
         middle = 0.5 * (below + above)
         if middle in side.shown or not below < middle < above:
             return
-        summary = run_at(middle)
-        side.add(middle, summary)
-        if summary.overturned is None:
+        side.add(middle, run_at(middle))
+        verdict = side.shown[middle].overturned
+        if verdict is None:
             return
-        if summary.overturned == flip.overturns_above:
-            above = middle
-        else:
-            below = middle
+        below, above = (below, middle) if verdict == flip.overturns_above else (middle, above)
 
 
 def _flips(runs: Mapping[float, RunSummary]) -> Iterator[Flip]:
@@ -201,11 +194,10 @@ def flips_sentence(scan: ScaleScan, *, width: float, resolution: float = 1.0) ->
     scales = list(scan.runs)
     largest, flips = scales[-1], scan.flips()
     critical = least_overturning_scale(scan.runs)
-    decided = [scale for scale, run in scan.runs.items() if run.overturned is not None]
-    if not decided:
+    if not scan.decided:
         text = "No run could be finished"
     elif math.isnan(critical):
-        text = f"Did not overturn up to {number(decided[-1])} times the motion"
+        text = f"Did not overturn up to {number(scan.decided[-1])} times the motion"
     elif critical == 0.0:
         text = "Overturns without the motion"
     else:
@@ -219,10 +211,9 @@ def flips_sentence(scan: ScaleScan, *, width: float, resolution: float = 1.0) ->
     if not math.isnan(gap := scan.largest_gap):  # to two digits, rounded up
         size = 10.0 ** (math.floor(math.log10(gap)) - 1)
         text += f", at most {math.ceil(gap / size - _ROUNDING_TOLERANCE) * size:.2g} apart"
-    slide_text = share_words(np.array([run.slides for run in scan.runs.values()]))
-    text += f"; {slide_text}" if slide_text else ""
-    slip_text = slip_words(np.array([run.slip for run in scan.runs.values()]))
-    text += f"; {slip_text}" if slip_text else ""
+    runs = scan.runs.values()
+    slides, slips = np.array([run.slides for run in runs]), np.array([run.slip for run in runs])
+    text += "".join(f"; {words}" for words in (share_words(slides), slip_words(slips)) if words)
     text += "." if scan.completed else ", then interrupted."
     first = next((flip for flip in flips if flip.overturns_above), None)
     end = largest
@@ -234,8 +225,7 @@ def flips_sentence(scan: ScaleScan, *, width: float, resolution: float = 1.0) ->
             f" Beyond {number(scan.resolved_up_to)} some are more than {100.0 * resolution:g} % "
             "apart, and a lesser scale between them may overturn."
         )
-    undecided = [scale for scale, run in scan.runs.items() if run.overturned is None]
-    if undecided:
+    if undecided := scan.undecided:
         text += f" {unfinished_words(undecided)}, the first at {number(undecided[0])}."
     return text
 
@@ -255,11 +245,8 @@ def least_overturning_scale(runs: dict[float, RunSummary]) -> float:
 def _standing_ranges(flips: Sequence[Flip], largest: float) -> list[tuple[float, float]]:
     """Return the ranges where the block stands again: their least and greatest scale of a run."""
     starts = [flip.above for flip in flips if not flip.overturns_above]
-    ends = [flip.below for flip in flips if flip.overturns_above]
-    if flips and flips[0].overturns_above:
-        ends = ends[1:]
-    ends += [largest] * (len(starts) - len(ends))
-    return list(zip(starts, ends, strict=True))
+    ends = [*(flip.below for flip in flips[1:] if flip.overturns_above), largest]
+    return list(zip(starts, ends, strict=False))
 
 
 def _range_words(gaps: list[str]) -> str:

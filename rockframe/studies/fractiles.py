@@ -142,7 +142,7 @@ def fractile_curves(
     return dataset.assign_attrs(
         {**attributes_of_system(runs), "intensity": name, **attributes,
          "response": response if label is None else f"{response} {label}",
-         "verdict": _sentence(curves, low, high, measure) + _left_out_sentence(curves, runs)}
+         "verdict": _sentence(curves, low, high, measure, overturns(runs).size)}
     )  # fmt: skip
 
 
@@ -282,10 +282,7 @@ def _response_curve(
 
 
 def fractiles_of(rows: Array, shares: Array) -> Array:
-    """Return least values up to which at least these shares of the rows lie, :eq:`eq-fractiles`.
-
-    Sorting avoids arithmetic with infinite values.
-    """
+    """Return least values up to which at least these shares of the rows lie, :eq:`eq-fractiles`."""
     place = np.ceil(len(rows) * shares - 1e-9).astype(int) - 1
     return np.sort(rows, axis=0)[np.clip(place, 0, len(rows) - 1)]
 
@@ -311,16 +308,12 @@ def _read_levels(value: Any, values: xr.DataArray, curves: Sequence[_ResponseCur
 
 
 def _sentence(
-    curves: Sequence[_ResponseCurve], low: float, high: float, measure: xr.DataArray
+    curves: Sequence[_ResponseCurve], low: float, high: float, measure: xr.DataArray, count: int
 ) -> str:
-    """Return the verdict in words: how many motions overturned, and from where half of them do."""
+    """Return the verdict in words: how many motions overturned, from where half, and of what."""
     falls = [
-        [
-            (max(first, low), last)
-            for first, last in curve.overturning
-            if last >= low and first <= high
-        ]
-        for curve in curves
+        [(max(first, low), last) for first, last in of if last >= low and first <= high]
+        for of in (curve.overturning for curve in curves)
     ]
     unit = unit_suffix_of(measure.attrs)
     motions = f"{len(curves)} motion{'s' if len(curves) > 1 else ''}"
@@ -330,16 +323,11 @@ def _sentence(
     for begin in sorted(first for ranges in falls for first, _ in ranges):
         fell = sum(any(first <= begin <= last for first, last in ranges) for ranges in falls)
         if fell >= 0.5 * len(curves):
-            of_them = "half of them" if len(curves) > 1 else "first"
-            return f"{text}, {of_them} at {begin:.4g}{unit}."
+            text += f", {'half of them' if len(curves) > 1 else 'first'} at {begin:.4g}{unit}"
+            break
+    missing = count - sum(len(curve.intensities) for curve in curves)
+    if missing:
+        verb = "is" if missing == 1 else "are"
+        reason = "without a verdict, intensity or response"
+        text += f". {missing} of {count} runs {verb} left out, {reason}"
     return f"{text}."
-
-
-def _left_out_sentence(curves: Sequence[_ResponseCurve], runs: xr.Dataset) -> str:
-    """Return in words how many runs were left out of the lines."""
-    every = overturns(runs).size
-    missing = every - sum(len(curve.intensities) for curve in curves)
-    if not missing:
-        return ""
-    verb = "is" if missing == 1 else "are"
-    return f" {missing} of {every} runs {verb} left out, without a verdict, intensity or response."

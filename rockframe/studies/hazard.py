@@ -24,7 +24,7 @@ from rockframe.suggestions import with_hints
 from rockframe.units import POSITIVE, Unit, check_attached_unit, to_ratio
 
 _OWNER: Final = "annual_rate"
-_RATE_COLUMNS, _PROBABILITY_COLUMNS = ("intensity", "rate"), ("intensity", "probability", "years")
+_COLUMNS: Final = ("intensity", "rate"), ("intensity", "probability", "years")
 _MAX_STEP: Final = 0.02
 """Longest part of an integral, as a logarithm of intensity; a polynomial fits well within it."""
 _GAUSS_POINTS: Final = 5
@@ -149,12 +149,10 @@ def annual_rate(
     dataset = with_variables(dataset, labels)
     for name in ("quantile_intensity", "contributing_intensity"):
         dataset[name].attrs["units"] = unit_of(curves[measure].attrs)
-    attributes = {
-        key: curves.attrs[key] for key in (PERIOD_ATTRIBUTE, "model") if key in curves.attrs
-    }
-    dataset = dataset.assign_attrs(
-        {**attributes, "intensity": measure, "confidence": curves.attrs.get("confidence", math.nan)}
-    )
+    known = curves.attrs
+    attributes = {key: known[key] for key in (PERIOD_ATTRIBUTE, "model") if key in known}
+    attributes |= {"intensity": measure, "confidence": known.get("confidence", math.nan)}
+    dataset = dataset.assign_attrs(attributes)
     _warn_beyond_curve(dataset, curve)
     return dataset.assign_attrs(verdict=_sentence(dataset))
 
@@ -180,21 +178,16 @@ def read_hazard(value: object, measure: xr.DataArray, between: object) -> Hazard
         rates = value.to_numpy().astype(np.float64)
     elif isinstance(value, Mapping):
         table = cast("Mapping[str, Any]", value)
-        if set(table) not in (set(_RATE_COLUMNS), set(_PROBABILITY_COLUMNS)):
-            expected = " or ".join(
-                ", ".join(map(repr, names)) for names in (_RATE_COLUMNS, _PROBABILITY_COLUMNS)
-            )
-            msg = (
-                f"{_OWNER}: a table of hazard has {expected}; found "
-                f"{', '.join(map(short_repr, table))}"
-            )
+        if set(table) not in map(set, _COLUMNS):
+            expected = " or ".join(", ".join(map(repr, names)) for names in _COLUMNS)
+            found = ", ".join(map(short_repr, table))
+            msg = f"{_OWNER}: a table of hazard has {expected}; found {found}"
             raise ComponentError(msg)
         values = _read_intensities(table["intensity"], name, unit)
         rates = _read_rates(table)
     else:
-        msg = (
-            f"{_OWNER}: hazard must be a table, a DataArray or a function, got {short_repr(value)}"
-        )
+        expected = "a table, a DataArray or a function"
+        msg = f"{_OWNER}: hazard must be {expected}, got {short_repr(value)}"
         raise ComponentError(msg)
     if rates.shape != values.shape or len(values) < 2:
         msg = (
@@ -228,10 +221,8 @@ def _read_rates(table: Mapping[str, Any]) -> Array:
     years = to_ratio(table["years"], owner=_OWNER, name="years", condition=POSITIVE, example="50")
     chance = np.asarray(table["probability"], dtype=np.float64)
     if np.any(chance <= 0.0) or np.any(chance >= 1.0):
-        msg = (
-            f"{_OWNER}: probabilities must be above 0 and below 1, got "
-            f"{short_repr(chance.tolist())}"
-        )
+        given = short_repr(chance.tolist())
+        msg = f"{_OWNER}: probabilities must be above 0 and below 1, got {given}"
         raise ComponentError(msg)
     return -np.log1p(-chance) / years
 
@@ -266,9 +257,10 @@ def _rate_of_state(fragility: xr.Dataset, curve: HazardCurve, measure: str) -> d
     with np.errstate(invalid="ignore"):  # a rate of zero has no shares
         cumulative = np.concatenate([[0.0], np.cumsum(parts)]) / rate
     logs = np.log(edges)
+    of_bounds = (fragility[f"exceedance_probability_{end}_bound"] for end in ("lower", "upper"))
     bounds = (
-        _rate_of_curve(fragility[f"exceedance_probability_{end}_bound"], curve)
-        for end in ("lower", "upper")
+        math.nan if np.isnan(bound).any() else float(_integrated(bound, *_subdivided(curve)).sum())
+        for bound in of_bounds
     )
     outside = (float(_contributions(fragility, end)[1].sum()) for end in curve.extrapolations())
     least, most = np.interp(np.log(_range_of_trials(fragility, measure)), logs, cumulative)
@@ -280,11 +272,7 @@ def _rate_of_state(fragility: xr.Dataset, curve: HazardCurve, measure: str) -> d
 
 
 def _range_of_trials(fragility: xr.Dataset, measure: str) -> tuple[float, float]:
-    """Return the least and the greatest intensity of trials.
-
-    The curve is drawn over the range of all structures; a stripe may be a group of intensities
-    around its own.
-    """
+    """Return the least and the greatest intensity of trials; a stripe may be a group of them."""
     along, stripes = fragility[measure].to_numpy(), fragility["stripe_intensity"].to_numpy()
     (tried,) = np.nonzero(fragility["stripe_trials"].to_numpy() > 0)
     first, last = tried[[0, -1]]
@@ -313,12 +301,10 @@ def lognormal_rates(
     """Return the rate of a lognormal capacity in parts of a power law, :eq:`eq-rate-of-part`."""
     from scipy.special import ndtr
 
-    with np.errstate(divide="ignore"):
-        eta = (
-            np.log(edges / median) / spread
-            if spread > 0.0
-            else np.where(edges < median, -np.inf, np.inf)
-        )
+    eta = np.where(edges < median, -np.inf, np.inf)
+    if spread > 0.0:
+        with np.errstate(divide="ignore"):
+            eta = np.log(edges / median) / spread
     # where the power law of a part is steep, the hazard at the median is large and the share of
     # capacities within the part is small: their logarithms are added
     shift = slopes * spread
@@ -366,12 +352,6 @@ def _interpolated(curve: xr.DataArray, at: Array) -> Array:
     return ndtr(score)
 
 
-def _rate_of_curve(probability: xr.DataArray, curve: HazardCurve) -> float:
-    if np.isnan(probability.to_numpy()).any():
-        return math.nan
-    return float(_integrated(probability, *_subdivided(curve)).sum())
-
-
 def _warn_beyond_curve(dataset: xr.Dataset, curve: HazardCurve) -> None:
     """Warn if a part of the rate lies beyond the ends of the hazard curve."""
     unit = unit_suffix_of(dataset["quantile_intensity"].attrs)
@@ -382,9 +362,8 @@ def _warn_beyond_curve(dataset: xr.Dataset, curve: HazardCurve) -> None:
             rate = dataset["annual_rate"] + dataset[f"unreached_rate_{side}"]
             share = float((dataset[f"unreached_rate_{side}"] / rate).max(skipna=True))
         if share > _WARNING_SHARE:
-            missing.append(
-                f"{side} {end:.4g}{unit}, where it ends, {100.0 * share:.2g} % of the rate"
-            )
+            percentage = f"{100.0 * share:.2g} % of the rate"
+            missing.append(f"{side} {end:.4g}{unit}, where it ends, {percentage}")
     if missing:
         warn(
             f"{_OWNER}: the hazard curve does not reach where the limit states are exceeded: if it "

@@ -103,15 +103,10 @@ def measure_words(name: str, period: Any) -> str:
 
 
 def measure_attributes(measure: "Intensity | ScaledIntensity") -> dict[str, Any]:
-    """Return the attributes in which a dataset records its measure."""
-    return {"intensity": measure.name} | _recorded_period(measure.period)
-
-
-def _recorded_period(period: Periods) -> dict[str, Any]:
-    """Return the attribute in which a dataset records period or periods of a measure."""
-    if period is None:
-        return {}
-    return {PERIOD_ATTRIBUTE: np.array(period) if isinstance(period, tuple) else period}
+    """Return the attributes in which a dataset records its measure, and period or periods of it."""
+    period = np.array(measure.period) if isinstance(measure.period, tuple) else measure.period
+    recorded = {"intensity": measure.name, PERIOD_ATTRIBUTE: period}
+    return {name: value for name, value in recorded.items() if value is not None}
 
 
 _SPECTRAL_AT_PERIOD: Final = re.compile(r"(?i)sa *[(\[] *([\d.]*).*[)\]]")
@@ -182,11 +177,7 @@ class Intensity:
 def measure_of_runs(
     runs: xr.Dataset, value: object, period: PeriodLike | None, motions: object, *, owner: str
 ) -> xr.DataArray:
-    """Return a measure of the motion of each case: a known one, a column, or given numbers.
-
-    A column is any coordinate or variable of the runs, along their dimensions, by its name.
-    """
-    dims = runs["status"].dims
+    """Return a measure of the motion of each case: a known one, a column by name, or numbers."""
     if motions is not None:
         named_motions(motions)  # also where they are not needed
     value = column_of_runs(runs, value)
@@ -200,17 +191,21 @@ def measure_of_runs(
     if not isinstance(value, xr.DataArray):
         which = Intensity.read(value, period, owner=owner)
         return intensity_of_runs(runs, which, motions, owner=owner)
-    if value.name is None or not set(value.dims) <= set(dims):
+    return aligned_with_runs(runs, value, "intensity", owner=owner)
+
+
+def aligned_with_runs(
+    runs: xr.Dataset, array: xr.DataArray, what: str, *, owner: str
+) -> xr.DataArray:
+    """Return the user's numbers in the order of the runs' labels; NaN where one is missing."""
+    dims = runs["status"].dims
+    if array.name is None or not set(array.dims) <= set(dims):
+        article = "an" if what == "intensity" else "a"
         msg = (
-            f"{owner}: an intensity of one's own needs a name and dimensions among "
-            f"{', '.join(map(str, dims))}, got {value.name!r} over {value.dims}"
+            f"{owner}: {article} {what} of one's own needs a name and dimensions among "
+            f"{', '.join(map(str, dims))}, got {array.name!r} over {array.dims}"
         )
         raise ComponentError(msg)
-    return _aligned_with_runs(runs, value, owner)
-
-
-def _aligned_with_runs(runs: xr.Dataset, array: xr.DataArray, owner: str) -> xr.DataArray:
-    """Return the user's numbers in the order of the runs' labels; NaN where one is missing."""
     for dim in array.dims:
         twice = dim in array.indexes and not array.indexes[dim].is_unique
         if twice and dim in runs.indexes and array.indexes[dim].equals(runs.indexes[dim]):
@@ -220,7 +215,7 @@ def _aligned_with_runs(runs: xr.Dataset, array: xr.DataArray, owner: str) -> xr.
         elif twice or array.sizes[dim] != runs.sizes[dim]:
             words = "labels that stand twice" if twice else f"{array.sizes[dim]} values"
             msg = (
-                f"{owner}: the intensity {array.name!r} has {words} along {str(dim)!r}, of which "
+                f"{owner}: the {what} {array.name!r} has {words} along {str(dim)!r}, of which "
                 f"the runs have {runs.sizes[dim]}"
             )
             raise ComponentError(msg)
@@ -249,16 +244,13 @@ def period_attribute(
 ) -> dict[str, Any]:
     """Return the period of a spectral measure, or those of an average, as an attribute."""
     named = [measure_name(measure) for measure in measures if not isinstance(measure, xr.DataArray)]
+    known: Any = {} if runs is None else runs.attrs
     if period is not None:
         several = AVERAGE if AVERAGE in named else SPECTRAL_ACCELERATION
-        return _recorded_period(Intensity.read(several, period, owner=owner).period)
-    if (
-        runs is None
-        or PERIOD_ATTRIBUTE not in runs.attrs
-        or not any(name in _PERIOD_DEPENDENT for name in named)
-    ):
+        known = measure_attributes(Intensity.read(several, period, owner=owner))
+    elif not any(name in _PERIOD_DEPENDENT for name in named):
         return {}
-    return {PERIOD_ATTRIBUTE: runs.attrs[PERIOD_ATTRIBUTE]}
+    return {name: known[name] for name in (PERIOD_ATTRIBUTE,) if name in known}
 
 
 def intensity_of_runs(
@@ -267,14 +259,14 @@ def intensity_of_runs(
     """Return an intensity measure of the motion of each case of a sweep."""
     if intensity.name in runs.coords and intensity.period is None:
         return runs[intensity.name]
-    before = motions_of_runs(runs, motions, owner=owner)
+    before = _motions_of_runs(runs, motions, owner)
     factor = _scale_factors(runs, before, owner)
     measured = map_motions(runs, before, intensity.compute)
     values = measured * np.abs(factor) ** SCALE_EXPONENTS[intensity.name]
     return values.assign_attrs(intensity.attributes()).rename(intensity.name)
 
 
-def motions_of_runs(runs: xr.Dataset, value: object, *, owner: str) -> dict[str, GroundMotion]:
+def _motions_of_runs(runs: xr.Dataset, value: object, owner: str) -> dict[str, GroundMotion]:
     """Return the motions of a sweep by their names, as they were before they were scaled."""
     if MOTION not in runs.coords:
         msg = f"{owner}: found runs without the coordinate {MOTION!r}; expected it, as sweeps have"

@@ -101,7 +101,7 @@ def _rotation_limit(value: Any, owner: str, name: str) -> float:
 
 def _variable_limit(items: tuple[Any, ...], owner: str) -> LimitState:
     """Read a limit state on a scalar of runs: its name, its limit, and the point or body."""
-    name, value, label = (*items, None, None)[:3] if len(items) in (2, 3) else ("", None, None)
+    name, value, label = (*items, None)[:3] if len(items) in (2, 3) else ("", None, None)
     if isinstance(name, str) and name and name not in SCHEMA:
         scalars = [row.name for row in SCHEMA.values() if TIME[0] not in row.dims]
         near = did_you_mean(name, scalars)
@@ -193,20 +193,15 @@ def exceeds(runs: xr.Dataset, state: LimitState) -> xr.DataArray:
 
 
 def _exceeds_any_value(runs: xr.Dataset, state: LimitState) -> xr.DataArray:
-    """Return which runs exceed a limit state for any value of its variable.
-
-    A block that passed the overturning angle and stands in the end has not overturned; but scalars
-    up to the overturning angle say nothing about later motion.
-    """
+    """Return which runs exceed a limit state for any value of its variable."""
+    # a block that passed the overturning angle and stands in the end has not overturned; but
+    # scalars up to the overturning angle say nothing about later motion
     followed = state.variable and state.variable not in _PEAKS_UP_TO_OVERTURNING
     return (overturns(runs) if followed else runs["overturned"]) == 1
 
 
 def demands(runs: xr.Dataset, state: LimitState) -> xr.DataArray:
-    """Return the response over its limit, infinite where the block overturned.
-
-    A run exceeds from 1 on; for overturning, where it is infinite. NaN without a verdict.
-    """
+    """Return the response over its limit, infinite where the block overturned."""
     exceeded = exceeds(runs, state)
     certain = exceeded if state.rotation == 1.0 else _exceeds_any_value(runs, state)
     if state.variable:
@@ -234,9 +229,7 @@ def scalar_of(runs: xr.Dataset, name: str, label: object = None, *, owner: str) 
             f"give one of {', '.join(map(repr, labels))}, got {requested!r}"
         )
         raise ComponentError(msg)
-    return (
-        values.isel({extra_dims[0]: labels.index(requested)}, drop=True) if extra_dims else values
-    )
+    return values.isel({dim: labels.index(requested) for dim in extra_dims}, drop=True)
 
 
 def _scalar_hint(runs: xr.Dataset, name: str) -> str:

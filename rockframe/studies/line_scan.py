@@ -205,9 +205,7 @@ def bracket_arrays(
         rows.setdefault((bracket.verdict, bracket.line), []).append(bracket)
     values = np.full((4, *shape, max(map(len, rows.values()), default=0)), np.nan)
     for place, several in rows.items():
-        numbers = [
-            (bracket.below, bracket.above, bracket.before, bracket.after) for bracket in several
-        ]
+        numbers = [(one.below, one.above, one.before, one.after) for one in several]
         values[(slice(None), *place, slice(len(several)))] = np.transpose(numbers)
     below, above, before, after = values
     return below, above, before, after
@@ -233,17 +231,14 @@ class LineVerdicts:
         return LineVerdicts(all_scales, all_verdicts, all_moved)
 
     def gaps(self, verdict: int, line: int) -> tuple[Array, Array]:
-        """Return the intervals between runs, up to the one that ends at the first exceedance.
-
-        An interval at whose upper end nothing moves is left out: nothing moves at lesser scales.
-        """
+        """Return the intervals between runs, up to the one that ends at the first exceedance."""
         along = self.verdicts[verdict, line]
         (known,) = np.nonzero(~np.isnan(along))
         (exceeding,) = np.nonzero(along[known] == 1.0)
         known = known[: exceeding[0] + 1] if len(exceeding) else known
-        known, far = known[:-1], known[1:]
-        counted = self.moved[line, far]
-        return self.scales[known[counted]], self.scales[far[counted]]
+        near, far = known[:-1], known[1:]
+        counted = self.moved[line, far]  # where nothing moves, nothing moves at lesser scales
+        return self.scales[near[counted]], self.scales[far[counted]]
 
     def gap_midpoints(self, resolution: float) -> LineScales:
         """Return lines and the middles of their gaps that are wider than the resolution."""
@@ -256,17 +251,14 @@ class LineVerdicts:
 
     @property
     def resolution(self) -> Array:
-        """The widest gap below each first exceedance, over its upper end; verdicts, lines [1].
-
-        It is 1 where the least scale exceeds already: the gap extends to zero.
-        """
+        """The widest gap below each first exceedance, over its upper end; verdicts, lines [1]."""
         widest = np.zeros(self.verdicts.shape[:2])
         for place in np.ndindex(widest.shape):
             near, far = self.gaps(*place)
             along = self.verdicts[place]
             along = along[~np.isnan(along)]
-            at_once = not len(along) or along[0] == 1.0
-            widest[place] = 1.0 if at_once else np.max((far - near) / far, initial=0.0)
+            to_zero = not len(along) or along[0] == 1.0  # the least scale exceeds already
+            widest[place] = 1.0 if to_zero else np.max((far - near) / far, initial=0.0)
         return widest
 
     @property
@@ -328,11 +320,10 @@ class LineScan:
         """Run all rows and motions at all scales, and narrow every change of a verdict.
 
         With a resolution the intervals below the first exceedance are made narrower than that
-        before. Only the runs of the scan have `histories`. After an interrupt (Ctrl-C) the
-        verdict of the scan says so.
+        before. Only the runs of the scan have `histories`.
         """
         with sweep_rounds(self.scene, self.motions, self.options, owner=self.owner) as rounds:
-            columns = self._row_columns(slice(None))
+            columns = table_of(self.columns)
             scan, completed = rounds.sweep("scan", columns or None, {SCALE: scales}, **histories)
 
             def run_at(part: str, requested: LineScales) -> tuple[Array, bool]:
@@ -348,9 +339,8 @@ class LineScan:
         if messages and completed:
             warn(f"{self.owner}: in further rounds: {messages[0]}", ModelWarning)
         if not completed:
-            scan.attrs["verdict"] = (
-                f"{str(scan.attrs['verdict']).removesuffix('.')}{INTERRUPTED_ENDING}"
-            )
+            text = str(scan.attrs["verdict"]).removesuffix(".")
+            scan.attrs["verdict"] = f"{text}{INTERRUPTED_ENDING}"
             msg = f"{self.owner}: interrupted; brackets are wider than asked{rounds.advice}"
             warn(msg, SolverWarning)
         return LineResults(scan, verdicts, brackets)
@@ -390,13 +380,17 @@ class LineScan:
         lines, scales = (np.array(values) for values in zip(*requested, strict=True))
         names = list(self.motions)
         rows, motions = np.divmod(lines, len(names))
-        cases = {**self._row_columns(rows), SCALE: scales, MOTION: [names[k] for k in motions]}
+        columns = table_of(self.columns, rows)
+        cases = {**columns, SCALE: scales, MOTION: [names[k] for k in motions]}
         runs, completed = rounds.sweep(part, cases, {}, follow_up=True)
         return runs, self.verdicts(runs).transpose(VERDICT_DIM, CASE).to_numpy(), completed
 
-    def _row_columns(self, rows: Any) -> dict[str, Any]:
-        columns = self.columns.items()
-        return {head(name, unit): values[rows] for name, (values, unit) in columns}
+
+def table_of(
+    columns: Mapping[str, tuple[Array, str]], rows: AnyArray | slice = slice(None)
+) -> dict[str, Any]:
+    """Return a table of cases, or some of its rows, from columns and their units."""
+    return {head(name, unit): values[rows] for name, (values, unit) in columns.items()}
 
 
 def _has_moved(runs: xr.Dataset) -> xr.DataArray:

@@ -19,6 +19,7 @@ from rockframe.studies.fragility.trials import check_one_structure, flatten_like
 from rockframe.studies.intensities import (
     PERIOD_ATTRIBUTE,
     PeriodLike,
+    aligned_with_runs,
     column_of_runs,
     measure_of_runs,
     measure_words,
@@ -119,12 +120,9 @@ def compare_intensities(
     runs = check_runs(runs, owner=_OWNER)
     values = scalar_of(runs, response, label, owner=_OWNER)
     named, fits = list[str](), list[CloudFit]()
-    if isinstance(measures, xr.DataArray):
-        measures = [measures]
-    listed = [
-        _measure_and_period(item)
-        for item in checked_list(measures, owner=_OWNER, name="measures", of="measures")
-    ]
+    given_measures = [measures] if isinstance(measures, xr.DataArray) else measures
+    every = checked_list(given_measures, owner=_OWNER, name="measures", of="measures")
+    listed = [_measure_and_period(item) for item in every]
     check_one_structure(runs, pooled, [given for given, _ in listed], owner=_OWNER)
     for given, period in listed:
         measure = measure_of_runs(runs, given, period, motions, owner=_OWNER)
@@ -145,10 +143,14 @@ def compare_intensities(
     if len(set(named)) < len(named):
         msg = f"{_OWNER}: measures are named twice: {', '.join(named)}"
         raise ComponentError(msg)
-    covariates = {
-        name: flatten_like(array, runs["status"]).astype(np.float64)[fits[0].included]
-        for name, array in _read_covariates(runs, against).items()
-    }
+    covariates: dict[str, Array] = {}
+    for name, array in _read_covariates(runs, against).items():
+        try:
+            numbers = flatten_like(array, runs["status"]).astype(np.float64)
+        except (TypeError, ValueError) as problem:
+            msg = f"{_OWNER}: {name!r} has no numbers, but words or objects; it is no covariate"
+            raise ComponentError(msg) from problem
+        covariates[name] = numbers[fits[0].included]
     dataset = _comparison_dataset(named, [fit.cloud for fit in fits], covariates)
     words = response if label is None else f"{response} {label}"
     return dataset.assign_attrs(response=words, verdict=_sentence(dataset))
@@ -169,10 +171,8 @@ def _read_covariates(
 ) -> dict[str, xr.DataArray]:
     """Read what the response should not depend on: numbers of the motions by their names."""
     if isinstance(values, Mapping):
-        return {
-            str(name): _covariate_of_runs(runs, str(name), numbers)
-            for name, numbers in values.items()
-        }
+        given = {str(name): numbers for name, numbers in values.items()}
+        return {name: _covariate_of_runs(runs, name, numbers) for name, numbers in given.items()}
     covariates: dict[str, xr.DataArray] = {}
     for name in checked_list(values, owner=_OWNER, name="against", of="names"):
         column = column_of_runs(runs, name)
@@ -186,7 +186,7 @@ def _read_covariates(
 def _covariate_of_runs(runs: xr.Dataset, name: str, value: Any) -> xr.DataArray:
     """Return the numbers of the motions to the runs."""
     if isinstance(value, xr.DataArray):
-        return value
+        return aligned_with_runs(runs, value.rename(name), "covariate", owner=_OWNER)
     labels = runs[MOTION].to_numpy().astype(str)
     if isinstance(value, Mapping | pd.Series):
         table = dict(cast("Any", value).items())
@@ -203,7 +203,7 @@ def _covariate_of_runs(runs: xr.Dataset, name: str, value: Any) -> xr.DataArray:
                 "give one for each of them, in their order, or by their labels"
             )
             raise ComponentError(msg)
-    numbers = np.array(values, dtype=np.float64).reshape(labels.shape)
+    numbers = np.array(values).reshape(labels.shape)
     return xr.DataArray(numbers, dims=runs[MOTION].dims, coords=runs[MOTION].coords)
 
 
@@ -230,9 +230,8 @@ def _comparison_dataset(
     }
     names = {"measure": np.array(list(names_of_measures), dtype=object)}
     if covariates:
-        tested = np.array([
-            [_residual_trend(cloud, values) for values in covariates.values()] for cloud in clouds
-        ])  # fmt: skip
+        columns = covariates.values()
+        tested = np.array([[_residual_trend(one, x) for x in columns] for one in clouds])
         values |= {"sufficiency_slope": tested[..., 0], "sufficiency_p_value": tested[..., 1]}
         names["covariate"] = np.array(list(covariates), dtype=object)
     dataset = build_dataset(

@@ -105,9 +105,7 @@ def overturning_map(
     check_system(system, _OWNER)
     amplitudes = read_sorted(amplitude, ACCELERATION, "amplitude", owner=_OWNER)
     frequencies = read_sorted(frequency, FREQUENCY, "frequency", owner=_OWNER)
-    impact_count = checked_integer(
-        impacts, owner=_OWNER, name="impacts", lowest=1, highest=_MAX_IMPACTS
-    )
+    most = checked_integer(impacts, owner=_OWNER, name="impacts", lowest=1, highest=_MAX_IMPACTS)
     width = read_width(bracket_width, owner=_OWNER)
     motions = {
         f"{value!r} {FREQUENCY.unit}": _unit_pulse(pulse, value) for value in frequencies.tolist()
@@ -115,19 +113,17 @@ def overturning_map(
 
     def modes(runs: xr.Dataset) -> xr.DataArray:
         verdict = overturns(runs)
-        counted = runs["impact_count"].clip(max=impact_count).astype(float)
+        counted = runs["impact_count"].clip(max=most).astype(float)
         return xr.where(verdict == 0.0, _STANDING, counted).where(verdict.notnull())
 
-    lines = LineScan(
-        system, motions, {}, run, _OWNER, lambda runs: modes(runs).expand_dims(VERDICT_DIM)
-    )
+    def verdicts(runs: xr.Dataset) -> xr.DataArray:
+        return modes(runs).expand_dims(VERDICT_DIM)
+
+    lines = LineScan(system, motions, {}, run, _OWNER, verdicts)
     result = lines.run_scan(amplitudes, width=width)
     counted = modes(result.scan)
-    dataset = with_variables(
-        result.scan,
-        {"impacts_before_overturning": _nan_if_standing(counted.to_numpy())},
-        over=tuple(map(str, counted.dims)),
-    )
+    impacts_of_runs = {"impacts_before_overturning": _nan_if_standing(counted.to_numpy())}
+    dataset = with_variables(result.scan, impacts_of_runs, over=tuple(map(str, counted.dims)))
     below, above, before, after = result.arrays((len(motions),))
     of_frequencies = {
         "boundary_count": np.isfinite(below).sum(axis=1),
@@ -143,7 +139,7 @@ def overturning_map(
         "title": "Overturning by pulses",
         "source": SCAN_SOURCE,
         "bracket_width": width,
-        "impacts_told_apart": impact_count,
+        "impacts_told_apart": most,
     }
     return dataset
 

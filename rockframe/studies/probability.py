@@ -26,8 +26,8 @@ from rockframe.simulation.system import System
 from rockframe.studies.confidence import clopper_pearson, normal_scores, read_confidence
 from rockframe.studies.sweeps.arguments import SweepArguments
 from rockframe.studies.sweeps.axes import Axis, read_number
-from rockframe.studies.sweeps.memory import check_memory
 from rockframe.studies.sweeps.motions import MotionsLike, full_name
+from rockframe.studies.sweeps.planning import check_memory
 from rockframe.studies.sweeps.scenes import SweptScene, motions_of_study, scene_of
 from rockframe.studies.sweeps.sweep import sweep
 from rockframe.units import POSITIVE, Condition, Measure, RatioLike, Unit, to_ratio
@@ -61,10 +61,8 @@ class RandomParameter:
 def read_spread(value: object, scene: SweptScene, *, owner: str) -> tuple[RandomParameter, ...]:
     """Read the argument ``spread``."""
     if not isinstance(value, Mapping) or not value:
-        msg = (
-            f"{owner}: spread must give distributions by names of parameters, got "
-            f"{short_repr(value)}"
-        )
+        expected = "must give distributions by names of parameters"
+        msg = f"{owner}: spread {expected}, got {short_repr(value)}"
         raise ComponentError(msg)
     parameters: list[RandomParameter] = []
     faults: list[str] = []
@@ -117,17 +115,21 @@ def read_correlation(argument: object, names: Sequence[str], *, owner: str) -> A
 
 
 def impose_correlation(cube: Array, matrix: Array, *, stratified: bool) -> Array:
-    """Impose a correlation of normal scores on a sample of the unit cube, :eq:`eq-gaussian-copula`.
-
-    A stratified sample keeps its values, in another order (Iman and Conover, 1982).
-    """
+    """Impose a correlation of normal scores on a sample, :eq:`eq-gaussian-copula`."""
     from scipy.special import ndtr
 
     normal = normal_scores(cube) @ np.linalg.cholesky(matrix).T
     if not stratified:
         return np.asarray(ndtr(normal), dtype=np.float64)
+    # each value stays, in another order (Iman and Conover, 1982)
     order = np.argsort(np.argsort(normal, axis=0, kind="stable"), axis=0, kind="stable")
     return np.take_along_axis(np.sort(cube, axis=0), order, axis=0)
+
+
+def check_drawn(numbers: Mapping[str, float], cases: int, *, owner: str) -> None:
+    """Refuse to draw more cases than the memory holds."""
+    if faults := check_memory(numbers, cases, "draw fewer cases", owner=owner):
+        raise StudyError(*faults)
 
 
 def draw_sample(
@@ -217,17 +219,15 @@ class Sensitivity(NamedTuple):
 
 
 def rank_parameters(columns: Mapping[str, AnyArray], verdict: Array) -> dict[str, Sensitivity]:
-    """Return the sensitivity of the verdict to each parameter, the greatest first.
-
-    The index is the correlation ratio of groups of equal size, minus its expectation without
-    dependence (the adjusted ratio, Kelley 1935): a first-order Sobol index from given data, within
-    the width of the groups. The distance is that of Hornberger and Spear (1981).
-    """
+    """Return the sensitivity of the verdict to each parameter, the greatest first."""
     sensitivities = {name: _sensitivity(values, verdict) for name, values in columns.items()}
     return dict(sorted(sensitivities.items(), key=lambda item: -item[1].first_order))
 
 
 def _sensitivity(values: AnyArray, verdict: Array) -> Sensitivity:
+    # the index is the correlation ratio of groups of equal size, minus its expectation without
+    # dependence (the adjusted ratio, Kelley 1935): a first-order Sobol index from given data,
+    # within the width of the groups; the distance is that of Hornberger and Spear (1981)
     from scipy.stats import chi2_contingency, ks_2samp
 
     count = len(verdict)
@@ -247,9 +247,8 @@ def _sensitivity(values: AnyArray, verdict: Array) -> Sensitivity:
     if groups < 2 or groups >= count:
         return Sensitivity()
     share = falls / count
-    between = float((size * (overturned / size - share) ** 2).sum()) / (
-        count * share * (1.0 - share)
-    )
+    squares = float((size * (overturned / size - share) ** 2).sum())
+    between = squares / (count * share * (1.0 - share))
     index = 1.0 - (1.0 - between) * (count - 1.0) / (count - groups)
     test: Any = chi2_contingency(np.stack([overturned, size - overturned]), correction=False)
     difference: Any = ks_2samp(values[verdict == 1.0], values[verdict == 0.0]) if numbers else None
@@ -352,11 +351,7 @@ def probability_of_overturning(
     start_seed = checked_integer(seed, owner=_OWNER, name="seed", lowest=0)
     level = read_confidence(confidence, owner=_OWNER)
     named = motions_of_study(motions, scene)
-    faults = check_memory(
-        {"numbers that are drawn": 1.0 + len(spreads)}, count, "draw fewer cases", owner=_OWNER
-    )
-    if faults:
-        raise StudyError(*faults)
+    check_drawn({"numbers that are drawn": 1.0 + len(spreads)}, count, owner=_OWNER)
     cube = draw_sample(spreads, count, method, start_seed)
     if matrix is not None:
         cube[:, 1:] = impose_correlation(cube[:, 1:], matrix, stratified=method is Sampling.LATIN)
@@ -372,9 +367,8 @@ def probability_of_overturning(
     if named is not None:
         table[MOTION] = np.array(list(named), dtype=object)[number]
     runs = sweep(system, named, cases=table, **run)
-    dataset = _with_probability(
-        runs, [parameter.name for parameter in spreads], several=several > 1, level=level
-    )
+    names = [parameter.name for parameter in spreads]
+    dataset = _with_probability(runs, names, several=several > 1, level=level)
     return dataset.assign_attrs(
         title="Probability of overturning",
         seed=start_seed,

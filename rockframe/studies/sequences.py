@@ -19,7 +19,7 @@ from rockframe.results.schema import with_variables
 from rockframe.results.variables.studies import MESSAGE, MOTION
 from rockframe.shared_arguments import with_shared_arguments
 from rockframe.signals import Motion, Signal
-from rockframe.signals.arrays import AnyArray, Array
+from rockframe.signals.arrays import AnyArray
 from rockframe.signals.motion import COEFFICIENTS
 from rockframe.simulation.certify.perturbations import divide_intervals
 from rockframe.simulation.run import NONE
@@ -63,7 +63,7 @@ def earthquake_sequences(
         Over ``sequence`` and ``earthquake``: the scalars of the run from the start of the sequence
         to the end of the pause after that earthquake, NaN beyond the last earthquake. Over
         ``sequence``: ``overturning_earthquake``, the number of the earthquake that overturned the
-        block, 0 if none did, and ``pause`` [s].
+        block, 0 if none did, NaN if a run without a verdict leaves it unknown, and ``pause`` [s].
 
     Raises
     ------
@@ -104,19 +104,25 @@ def earthquake_sequences(
     }
     exists = np.arange(longest) < np.array([[len(sequence)] for sequence in joined.values()])
     arranged = _unstack_sequences(sweep(system, motions, **run), exists)
-    overturned = overturns(arranged).transpose("sequence", EARTHQUAKE).to_numpy() == 1.0
+    verdicts = overturns(arranged).transpose("sequence", EARTHQUAKE).to_numpy()
+    overturned = (verdicts == 1.0).any(axis=1)
+    # after which earthquake the verdict of a sequence is decided, or not known
+    decisive = (verdicts == 1.0) | (np.isnan(verdicts) & exists)
+    first = decisive.argmax(axis=1)
+    number = np.where(decisive.any(axis=1), first + 1.0, 0.0)
+    number[np.isnan(verdicts[np.arange(len(first)), first])] = np.nan
     labels = {
         "sequence": np.array(list(joined), dtype=object),
         EARTHQUAKE: np.arange(1, longest + 1),
-        "overturning_earthquake": np.where(
-            overturned.any(axis=1), overturned.argmax(axis=1) + 1, 0
-        ),
+        "overturning_earthquake": number,
         "pause": np.array([_actual_pause(sequence[0], pause_time) for sequence in named.values()]),
     }
     dataset = with_variables(arranged, labels)
     of_all = "1 sequence" if len(joined) == 1 else f"all {len(joined)} sequences"
-    verdict = f"Of {of_all} {int(overturned.any(axis=1).sum())} overturned."
-    return dataset.assign_attrs(title="Earthquakes in sequence", verdict=verdict)
+    text = f"Of {of_all} {int(overturned.sum())} overturned"
+    if unknown := int((np.isnan(number) & ~overturned).sum()):
+        text += f"; {unknown} {'has' if unknown == 1 else 'have'} no verdict"
+    return dataset.assign_attrs(title="Earthquakes in sequence", verdict=f"{text}.")
 
 
 def _read_sequences(value: object) -> dict[str, list[GroundMotion]]:
@@ -134,20 +140,18 @@ def _read_sequences(value: object) -> dict[str, list[GroundMotion]]:
         named = {f"sequence {number}": sequence for number, sequence in enumerate(listed, start=1)}
     else:
         named = {}
-    sequences: dict[str, list[GroundMotion]] = {}
-    for name, sequence in named.items():
-        motions = [sequence] if isinstance(sequence, GroundMotion) else checked_list(
-            sequence, owner=_OWNER, name=repr(name), of="GroundMotions"
-        )  # fmt: skip
-        if not motions or not all(isinstance(motion, GroundMotion) for motion in motions):
-            msg = (
-                f"{_OWNER}: {name!r} needs GroundMotions in their order, got {short_repr(sequence)}"
-            )
-            raise ComponentError(msg)
-        sequences[name] = motions
-    if not sequences:
+    if not named:
         msg = f"{_OWNER}: found {short_repr(value)}; expected sequences of GroundMotions"
         raise ComponentError(msg)
+    sequences: dict[str, list[GroundMotion]] = {}
+    for name, sequence in named.items():
+        given = [sequence] if isinstance(sequence, GroundMotion) else sequence
+        motions = checked_list(given, owner=_OWNER, name=repr(name), of="GroundMotions")
+        if not motions or not all(isinstance(motion, GroundMotion) for motion in motions):
+            needed = f"{name!r} needs GroundMotions in their order"
+            msg = f"{_OWNER}: {needed}, got {short_repr(sequence)}"
+            raise ComponentError(msg)
+        sequences[name] = motions
     return {name: _with_common_step(motions) for name, motions in sequences.items()}
 
 
@@ -179,17 +183,14 @@ def _join(first: GroundMotion, second: GroundMotion | None, pause_time: float) -
     if second is None and pause_time == 0.0:
         return first
     still = _pause_steps(first, pause_time)
-    motions = [motion for motion in (first, second) if motion is not None]
+    motions = [first] if second is None else [first, second]
     horizontal = _concatenate([motion.si.horizontal for motion in motions], still)
     vertical = None
     if any(motion.si.vertical is not None for motion in motions):
-        vertical = _concatenate(
-            [motion.si.vertical or _zero_vertical(motion.si.horizontal) for motion in motions],
-            still,
-        )
-    return GroundMotion(
-        Motion(horizontal, vertical), name=", then ".join(motion.name for motion in motions)
-    )
+        components = [motion.si.vertical or _still(motion.si.horizontal) for motion in motions]
+        vertical = _concatenate(components, still)
+    name = ", then ".join(motion.name for motion in motions)
+    return GroundMotion(Motion(horizontal, vertical), name=name)
 
 
 def _pause_steps(motion: GroundMotion, pause_time: float) -> int:
@@ -203,23 +204,19 @@ def _actual_pause(motion: GroundMotion, pause_time: float) -> float:
     return pause_time if math.isclose(pause, pause_time, rel_tol=_STEP_TOLERANCE) else pause
 
 
-def _zero_vertical(horizontal: Signal) -> Signal:
+def _still(horizontal: Signal) -> Signal:
     """Return a vertical component that is zero, of the length of the horizontal one."""
-    still = np.zeros(horizontal.samples.size)
-    return replace(horizontal, samples=still, polynomials=None, name="vertical")
+    zeros = np.zeros(horizontal.samples.size)
+    return replace(horizontal, samples=zeros, polynomials=None, name="vertical")
 
 
 def _concatenate(signals: Sequence[Signal], still: int) -> Signal:
     """Put intervals of still ground after a signal, and then another one, if there is one."""
     first, *later = signals
     samples = [first.samples, np.zeros(still - len(later)), *(signal.samples for signal in later)]
-    pieces = [_padded(first.pieces), np.zeros((still, COEFFICIENTS))]
-    pieces += [_padded(signal.pieces) for signal in later]
+    every = [first.pieces, np.zeros((still, COEFFICIENTS)), *(signal.pieces for signal in later)]
+    pieces = [np.pad(of, ((0, 0), (0, COEFFICIENTS - of.shape[1]))) for of in every]
     return Signal(first.time_step, np.concatenate(samples), np.concatenate(pieces), first.name)
-
-
-def _padded(pieces: Array) -> Array:
-    return np.pad(pieces, ((0, 0), (0, COEFFICIENTS - pieces.shape[1])))
 
 
 def _unstack_sequences(runs: xr.Dataset, exists: AnyArray) -> xr.Dataset:
@@ -229,9 +226,7 @@ def _unstack_sequences(runs: xr.Dataset, exists: AnyArray) -> xr.Dataset:
     for name, variable in runs.data_vars.items():
         if variable.dims != (MOTION,):
             continue
-        values = (
-            np.full(exists.shape, np.nan) if gaps else np.empty(exists.shape, dtype=variable.dtype)
-        )
+        values = np.full(exists.shape, np.nan) if gaps else np.empty(exists.shape, variable.dtype)
         values[exists] = variable.to_numpy()
         attributes = dict(variable.attrs)
         if gaps and "flag_values" in attributes:

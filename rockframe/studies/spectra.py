@@ -12,17 +12,16 @@ from rockframe.components import Block
 from rockframe.errors import ComponentError, collected_warnings
 from rockframe.results.outcome import overturns
 from rockframe.results.schema import build_dataset, with_variables
-from rockframe.results.table import head
 from rockframe.results.variables.studies import CASE, MOTION
 from rockframe.shared_arguments import with_shared_arguments
 from rockframe.simulation.system import System, check_system
+from rockframe.studies.dynamic_analysis import read_line_axes, unstack_cases
 from rockframe.studies.intensities import (
     SCALE_EXPONENTS,
     Intensity,
     map_motions,
     measure_attributes,
 )
-from rockframe.studies.line_axes import read_line_axes, unstack_cases
 from rockframe.studies.line_scan import (
     CAPACITY_DEFINITION,
     SCAN_SOURCE,
@@ -32,6 +31,7 @@ from rockframe.studies.line_scan import (
     read_scales,
     read_sorted,
     read_width,
+    table_of,
 )
 from rockframe.studies.sweeps.arguments import SweepArguments
 from rockframe.studies.sweeps.motions import SCALE, MotionsLike
@@ -65,10 +65,8 @@ class BlockSizes:
         scene = scene_of(self.system)
         arguments = signature(overturning_spectrum).parameters
         # a wall has a height, too
-        other_parts = [
-            part for part in self.system.parts.structural() if not isinstance(part, Block)
-        ]
-        shared = {name for part in other_parts for name in part.varied()}
+        parts = self.system.parts.structural()
+        shared = {name for part in parts if not isinstance(part, Block) for name in part.varied()}
         sizes = {
             f"Block.{name}" if name in shared else name: (values, str(LENGTH.unit))
             for name, values in (("width", width), ("height", height))
@@ -80,10 +78,9 @@ class BlockSizes:
         self.columns = other_axes.columns(sizes)
         self._sizes = {"slenderness": len(slenderness), "rocking_period": len(periods)}
         self._sizes |= other_axes.sizes
-        labels = build_dataset({"slenderness": slenderness, "rocking_period": periods}, {})
-        self._labels = {
-            str(name): labels[name].variable for name in labels.coords
-        } | other_axes.labels
+        labels = build_dataset({"slenderness": slenderness, "rocking_period": periods}, {}).coords
+        own = {str(name): values.variable for name, values in labels.items()}
+        self._labels = own | other_axes.labels
 
     def unstack(self, runs: xr.Dataset) -> xr.Dataset:
         """Return the runs with the dimensions of the sizes instead of the rows of the table."""
@@ -91,10 +88,7 @@ class BlockSizes:
 
 
 def _with_shape_factor(system: System, owner: str) -> System:
-    """Return a system whose block keeps its shape factor where width and height change.
-
-    An inertia and a height of the centre of mass that were given would not change with them.
-    """
+    """Return a system whose block keeps its shape factor where width and height change."""
     block, fault = system.parts.block, ""
     if type(block) is not Block:
         fault = f"a {type(block or next(iter(system.parts.structural()))).__name__}"
@@ -108,7 +102,7 @@ def _with_shape_factor(system: System, owner: str) -> System:
         msg = f"{owner}: system needs a block of width and height on its base, got {fault}"
         raise ComponentError(msg)
     if block.given.inertia is None and block.given.centre_height is None:
-        return system
+        return system  # otherwise these would not change with width and height
     with collected_warnings():  # block and system already gave their warnings when they were made
         scaling = block.replace(shape_factor=block.shape_factor, centre_height=None)
         other_parts = [part for part in system.parts.structural() if part is not block]
@@ -179,9 +173,8 @@ def rocking_spectrum(
     {'slenderness': 1, 'rocking_period': 3, 'motion': 1}
     """
     sizes = BlockSizes(system, periods, slenderness, axes, owner=_ROCKING)
-    heads = {head(name, unit): values for name, (values, unit) in sizes.columns.items()}
     named = needed_motions(motions, scene_of(system), owner=_ROCKING)
-    runs = sweep(sizes.system, named, cases=heads, **run)
+    runs = sweep(sizes.system, named, cases=table_of(sizes.columns), **run)
     return sizes.unstack(runs).assign_attrs(title="Rocking spectrum")
 
 

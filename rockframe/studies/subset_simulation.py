@@ -1,6 +1,6 @@
 """Small probabilities of limit states with random parameters and motions: subset simulation."""
 
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from contextlib import nullcontext
 from typing import Any, Final, Unpack
 
@@ -33,7 +33,7 @@ from rockframe.studies.conditional_sampling import (
     subset_probability,
     subset_variation,
 )
-from rockframe.studies.confidence import read_confidence
+from rockframe.studies.confidence import BOUND_SUFFIXES, read_confidence
 from rockframe.studies.limit_states import (
     LIMITS_ATTRIBUTE,
     OVERTURNING,
@@ -46,11 +46,11 @@ from rockframe.studies.line_scan import INTERRUPTED_ENDING, SweepRounds, sweep_r
 from rockframe.studies.probability import (
     SAMPLING_ATTRIBUTE,
     RandomParameter,
+    check_drawn,
     read_correlation,
     read_spread,
 )
 from rockframe.studies.sweeps.arguments import SweepArguments
-from rockframe.studies.sweeps.memory import check_memory
 from rockframe.studies.sweeps.motions import MotionsLike
 from rockframe.studies.sweeps.scenes import motions_of_study, scene_of
 from rockframe.system.options import PointsLike
@@ -188,24 +188,25 @@ def subset_simulation(
     first = checked_integer(seed, owner=_OWNER, name="seed", lowest=0)
     nominal = read_confidence(confidence, owner=_OWNER)
     named = motions_of_study(motions, scene)
-    wrong = check_memory(
-        {"samples": 2.0 + len(spreads)}, count * max_levels, "draw fewer cases", owner=_OWNER
-    )
-    if wrong:
-        raise StudyError(*wrong)
+    check_drawn({"samples": 2.0 + len(spreads)}, count * max_levels, owner=_OWNER)
     requested = {**run, "points": points}
     with sweep_rounds(system, named, requested, owner=_OWNER) as rounds:
         sampler = _Sampler(rounds, spreads, matrix, list(named or ()), state)
-        level_iterator = subset_levels(
-            sampler.demand,
-            sampler.size,
-            np.inf if state.rotation == 1.0 else 1.0,
-            count=count,
-            share=fraction,
-            max_levels=max_levels,
-            rng=np.random.default_rng(first),
-        )
-        sampled, completed = _collect_levels(level_iterator, rounds.advice)
+        rng, greatest = np.random.default_rng(first), np.inf if state.rotation == 1.0 else 1.0
+        sampled, completed = list[Level](), True
+        try:
+            sampled.extend(
+                subset_levels(
+                    sampler.demand, sampler.size, greatest,
+                    count=count, share=fraction, max_levels=max_levels, rng=rng,
+                )
+            )  # fmt: skip
+        except KeyboardInterrupt:
+            completed = False
+            message = f"{_OWNER}: interrupted at level {len(sampled) + 1}{rounds.advice}"
+            if not sampled:
+                raise StudyError(message) from None
+            warn(message, SolverWarning)
     if sampler.warnings and completed:
         warn(f"{_OWNER}: in further rounds: {sampler.warnings[0]}", ModelWarning)
     dataset = _subset_dataset(sampler, sampled, nominal, completed=completed)
@@ -293,31 +294,14 @@ class _Sampler:
         return table
 
 
-def _collect_levels(iterator: Iterator[Level], advice: str) -> tuple[list[Level], bool]:
-    """Return the levels, and whether sampling was completed."""
-    levels: list[Level] = []
-    try:
-        levels.extend(iterator)
-    except KeyboardInterrupt:
-        message = f"{_OWNER}: interrupted at level {len(levels) + 1}{advice}"
-        if not levels:
-            raise StudyError(message) from None
-        warn(message, SolverWarning)
-        return levels, False
-    return levels, True
-
-
 def _subset_dataset(
     sampler: _Sampler, levels: Sequence[Level], confidence: float, *, completed: bool
 ) -> xr.Dataset:
     """Return a dataset of the samples of all levels with their runs, and of the probability."""
     first = sampler.runs[0]
-    samples = concat(sampler.runs, CASE).isel(
-        {CASE: np.concatenate([level.origins for level in levels])}
-    )
-    samples = samples.assign_coords(
-        {CASE: (CASE, np.arange(samples.sizes[CASE]), first[CASE].attrs)}
-    )
+    origins = np.concatenate([level.origins for level in levels])
+    samples = concat(sampler.runs, CASE).isel({CASE: origins})
+    samples = samples.assign_coords({CASE: (CASE, np.arange(len(origins)), first[CASE].attrs)})
     lower, upper = subset_bounds(levels, confidence)
     of_levels = build_dataset(
         {
@@ -337,11 +321,10 @@ def _subset_dataset(
         {},
         source="subset simulation by event-driven runs",
     )
+    lengths = [len(level.demands) for level in levels]
     of_samples = {
         "demand": np.concatenate([level.demands for level in levels]),
-        "sample_level": np.repeat(
-            of_levels["sampling_level"], [len(level.demands) for level in levels]
-        ),
+        "sample_level": np.repeat(of_levels["sampling_level"], lengths),
         "sample_weight": np.concatenate(sample_weights(levels)),
     }
     attributes = {name: first.attrs[name] for name in _TABLE_ATTRIBUTES}
@@ -374,10 +357,9 @@ def _sentence(
 ) -> str:
     """Return the verdict in words: the probability, and the number of runs."""
     outcome = "Overturns" if state.rotation == 1.0 else f"Exceeds {state.name}"
-    lower, upper = (
-        float(dataset[f"exceedance_probability_{end}_bound"]) for end in ("lower", "upper")
+    probability, lower, upper = (
+        float(dataset[f"exceedance_probability{end}"]) for end in BOUND_SUFFIXES
     )
-    probability = float(dataset["exceedance_probability"])
     if probability > 0.0:
         text = (
             f"{outcome} with probability {probability:.2e}, from {lower:.2e} to {upper:.2e} with "

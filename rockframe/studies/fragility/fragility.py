@@ -1,7 +1,6 @@
 """Fragility of runs, of dynamic analyses and of counts: the public function."""
 
 from collections.abc import Iterable, Mapping, Sequence
-from itertools import repeat
 from typing import Any, Final
 
 import numpy as np
@@ -10,7 +9,6 @@ import xarray as xr
 from rockframe.arguments import checked_choice, checked_list, checked_name, is_iterable
 from rockframe.errors import ComponentError, SchemaError, short_repr
 from rockframe.results.schema import with_labels, with_variables
-from rockframe.results.variables.analyses import LIMIT_STATE
 from rockframe.simulation.friction_checks import share_words
 from rockframe.studies.confidence import read_confidence
 from rockframe.studies.fragility.labelling import BoundSettings, fragility_dataset
@@ -26,7 +24,7 @@ from rockframe.studies.fragility.trials import (
     trials_of_capacities,
     trials_of_runs,
 )
-from rockframe.studies.fragility.words import POOLED_ATTRIBUTE, fragility_sentences
+from rockframe.studies.fragility.words import fragility_sentences, pooled_attribute
 from rockframe.studies.intensities import Intensity, PeriodLike, measure_of_runs, period_attribute
 from rockframe.studies.limit_states import (
     LimitState,
@@ -44,10 +42,7 @@ from rockframe.units import RatioLike
 _OWNER: Final = "fragility"
 _COLUMNS: Final = ("intensity", "exceeded", "trials")
 _CAPACITIES: Final = "capacities"
-_TRIALS: Final = ("runs", _CAPACITIES)
 _COMMON: Final = "common"
-_DISPERSIONS: Final = ("each", _COMMON)
-_MAX_MEASURES: Final = 2
 _MAX_JACKKNIFE_MOTIONS: Final = 80
 """Motions up to which each is left out in turn; with more the sandwich has equal coverage."""
 
@@ -181,9 +176,13 @@ def fragility(
     listed = _listed_measures(intensity)
     pooled_axes = checked_list(pooled, owner=_OWNER, name="pooled", of="names")
     structures = structures_of(runs, pooled_axes, listed, owner=_OWNER)
-    of_capacities = checked_name(trials, _TRIALS, owner=_OWNER, name="trials") == _CAPACITIES
+    kinds = "runs", _CAPACITIES
+    of_capacities = checked_name(trials, kinds, owner=_OWNER, name="trials") == _CAPACITIES
     if of_capacities and "capacity_scale" not in runs:
         msg = f"{_OWNER}: capacities are those of rf.incremental_dynamic_analysis, found a sweep"
+        raise SchemaError(msg)
+    if of_capacities and SCALE not in runs.dims:
+        msg = f"{_OWNER}: found a dynamic analysis at one scale; expected one with all its scales"
         raise SchemaError(msg)
     states = _read_states(runs, limits)
     measures = [measure_of_runs(runs, measure, period, motions, owner=_OWNER) for measure in listed]
@@ -202,7 +201,8 @@ def fragility(
              for structure in structures.parts(verdicts[-1])]  # fmt: skip
     repeated = not of_capacities and any(motions < count for motions, count in sizes)
     of_runs = Bands.JACKKNIFE if max(sizes)[0] <= _MAX_JACKKNIFE_MOTIONS else Bands.SANDWICH
-    common = checked_name(dispersion, _DISPERSIONS, owner=_OWNER, name="dispersion") == _COMMON
+    ways = "each", _COMMON
+    common = checked_name(dispersion, ways, owner=_OWNER, name="dispersion") == _COMMON
     if common and (of_capacities or len(measures) > 1 or bands == "profile"):
         msg = (
             f"{_OWNER}: a common dispersion is fitted to runs, over one measure, with bands by "
@@ -217,33 +217,33 @@ def fragility(
     parts = zip(*(structures.parts(array) for array in (*verdicts, *measures)), strict=True)
     samples: list[StructureTrials] = []
     fits: list[Fit] | None = [] if common else None
-    analyses = structures.parts(runs) if of_capacities else repeat(runs)
-    for part, analysis in zip(parts, analyses, strict=False):
+    analyses = structures.parts(runs if of_capacities else runs[[]])
+    for part, analysis in zip(parts, analyses, strict=True):
         state_verdicts, along = part[: len(states)], part[len(states) :]
         if fits is not None:
             fits += _fit_ordered(state_verdicts, along[0], states, settings.bands)
         for state, verdict in zip(states, state_verdicts, strict=True):
             if of_capacities:
-                samples.append(_trials_of_state(analysis, state, verdict, along))
+                of_state = analysis
+                if "limit_state" in analysis.dims:
+                    of_state = analysis.sel(limit_state=state.name)
+                samples.append(trials_of_capacities(of_state, verdict.notnull(), along))
             else:
                 samples.append(trials_of_runs(verdict, along, by_motion=by_motion))
-    structure_sizes = dict(zip(structures.groups, structures.shape, strict=True))
-    attributes: dict[str, Any] = {"trials": trials, "dispersions": dispersion}
-    if pooled_axes:
-        attributes[POOLED_ATTRIBUTE] = ", ".join(pooled_axes)
+    sizes_of_results = dict(zip(structures.groups, structures.shape, strict=True))
+    sizes_of_results["limit_state"] = len(states)
     dataset = fragility_dataset(
-        samples, {**structure_sizes, "limit_state": len(states)},
+        samples, sizes_of_results,
         [(str(measure.name), dict(measure.attrs)) for measure in measures], settings,
-        attributes | period_attribute(runs, listed, period, owner=_OWNER), fits,
+        {"trials": trials, "dispersions": dispersion, **pooled_attribute(pooled_axes),
+         **period_attribute(runs, listed, period, owner=_OWNER)}, fits,
     )  # fmt: skip
     dataset = with_labels(dataset, structures.coordinates)
     dataset = with_variables(dataset, labels_of_states(states))
     if of_capacities:
         below = np.array([int((~sample.trials.has_lower).sum()) for sample in samples])
-        below = below.reshape((*structure_sizes.values(), len(states)))
-        dataset = with_variables(
-            dataset, {"below_scan_count": below}, over=(*structure_sizes, *LIMIT_STATE)
-        )
+        below = below.reshape(tuple(sizes_of_results.values()))
+        dataset = with_variables(dataset, {"below_scan_count": below}, over=tuple(sizes_of_results))
     dataset.attrs["verdict"] = (
         f"{fragility_sentences(dataset)}{_sliding_sentence(runs, of_capacities=of_capacities)}"
     )
@@ -273,11 +273,12 @@ def _fit_counts(
     values = read_in_unit_of(which.name, unit, intensity, "intensity", owner=_OWNER)
     over = np.asarray(exceeded, dtype=np.float64)
     count = np.broadcast_to(np.asarray(trials, dtype=np.float64), values.shape)
-    wrong = over.shape != values.shape or np.any(values <= 0.0)
-    are_counts = (
-        not wrong and np.array_equal(over, np.round(over)) and np.all((over >= 0) & (over <= count))
-    )
-    if wrong or not are_counts or not np.array_equal(count, np.round(count)):
+    if (
+        over.shape != values.shape
+        or np.any(values <= 0.0)
+        or not np.all((over >= 0.0) & (over <= count))
+        or not all(np.array_equal(numbers, np.round(numbers)) for numbers in (over, count))
+    ):
         msg = (
             f"{_OWNER}: expected intensities above zero and for each of them a number of "
             f"exceedances from 0 to that of the trials, got {short_repr(exceeded)} of "
@@ -292,11 +293,10 @@ def _fit_counts(
     times = np.column_stack([over, count - over]).astype(int).ravel()
     verdicts = np.repeat(np.tile([1.0, 0.0], len(values)), times)
     runs = np.repeat(np.repeat(values, 2), times)[:, None], verdicts
-    attributes: dict[str, Any] = {"trials": "trials"}
     dataset = fragility_dataset(
         [StructureTrials(counted_trials, runs, 0, len(verdicts))],
         {"limit_state": 1}, [(which.name, which.attributes())], settings,
-        attributes | period_attribute(None, [measure], period, owner=_OWNER),
+        {"trials": "trials", **period_attribute(None, [measure], period, owner=_OWNER)},
     ).isel(limit_state=0)  # fmt: skip
     return dataset.assign_attrs(verdict=fragility_sentences(dataset))
 
@@ -317,17 +317,6 @@ def _read_states(runs: xr.Dataset, limits: Iterable[object] | None) -> tuple[Lim
         )
         raise ComponentError(msg)
     return states
-
-
-def _trials_of_state(
-    analysis: xr.Dataset, state: LimitState, verdict: xr.DataArray, measures: Sequence[xr.DataArray]
-) -> StructureTrials:
-    """Return the capacities that a dynamic analysis found for a limit state."""
-    if SCALE not in analysis.dims:
-        msg = f"{_OWNER}: found a dynamic analysis at one scale; expected one with all its scales"
-        raise SchemaError(msg)
-    of_state = analysis.sel(limit_state=state.name) if "limit_state" in analysis.dims else analysis
-    return trials_of_capacities(of_state, verdict.notnull(), measures)
 
 
 def _fit_ordered(
@@ -358,7 +347,7 @@ def _listed_measures(value: object) -> list[object]:
     if isinstance(value, str | xr.DataArray):
         return [value]
     listed = list(value) if is_iterable(value) else []
-    if not 1 <= len(listed) <= _MAX_MEASURES:
+    if len(listed) not in (1, 2):
         msg = f"{_OWNER}: intensity needs one measure, or two, got {short_repr(value)}"
         raise ComponentError(msg)
     return listed

@@ -12,7 +12,7 @@ from rockframe.results.schema import build_dataset, with_labels, with_variables
 from rockframe.results.variables.analyses import FragilityStatus
 from rockframe.results.variables.variable import unit_of
 from rockframe.signals.arrays import AnyArray, Array
-from rockframe.studies.confidence import clopper_pearson
+from rockframe.studies.confidence import BOUND_SUFFIXES, clopper_pearson
 from rockframe.studies.fragility.likelihood import Bands, Fit, boundary, fit, gap, jackknife
 from rockframe.studies.fragility.trials import StructureTrials, Trials
 from rockframe.studies.fragility.words import enough_trials
@@ -32,8 +32,6 @@ _INTENSITY_VARIABLES: Final = (
     "cloud_intensity",
 )  # fmt: skip
 """Variables in the unit of the intensity."""
-BOUND_SUFFIXES: Final = ("", "_lower_bound", "_upper_bound")
-"""Endings of the names of an estimate and of its bounds."""
 MeasureLabel = tuple[str, dict[str, Any]]
 """Name and attributes of an intensity measure."""
 
@@ -93,15 +91,9 @@ def fragility_dataset(
     attributes: Mapping[str, Any],
     fits: Sequence[Fit] | None = None,
 ) -> xr.Dataset:
-    """Fit capacities, unless fits are given, and label the results.
-
-    For each structure and limit state, with the `sizes`, the last one varying fastest.
-    """
-    items = [None] * len(structures) if fits is None else fits
-    every = [
-        _FittedTrials.from_trials(structure, settings, given)
-        for structure, given in zip(structures, items, strict=True)
-    ]
+    """Fit capacities of structures and limit states, unless fits are given, and label them."""
+    rows = zip(structures, fits or [None] * len(structures), strict=True)
+    every = [_FittedTrials.from_trials(structure, settings, given) for structure, given in rows]
     values: dict[str, Any] = {
         "fragility_status": [fitted.fit.status for fitted in every],
         "trial_count": [structure.trials.weight.sum() for structure in structures],
@@ -113,12 +105,9 @@ def fragility_dataset(
         rows = [_parameters(fitted, settings) for fitted in every]
         values |= {name: [row[name] for row in rows] for name in rows[0]}
     else:
-        values |= {
-            "fitted_coefficient": [fitted.fit.coefficients for fitted in every],
-            "fitted_coefficient_error": [
-                np.sqrt(np.diag(fitted.fit.covariance)) for fitted in every
-            ],
-        }
+        values["fitted_coefficient"] = [fitted.fit.coefficients for fitted in every]
+        errors = [np.sqrt(np.diag(fitted.fit.covariance)) for fitted in every]
+        values["fitted_coefficient_error"] = errors
     dataset = build_dataset(
         _reshaped(values, sizes),
         {**attributes, "bands": str(settings.bands), "confidence": settings.confidence},
@@ -303,11 +292,7 @@ def with_stripes(
 
 def _capacity_verdicts(trials: Sequence[Trials]) -> list[tuple[Array, Array]]:
     """Return verdicts on capacities at intensities that divide them into equal groups."""
-    every = [
-        np.where(capacities.has_upper, capacities.upper[:, 0], capacities.lower[:, 0])
-        for capacities in trials
-    ]
-    ends = np.concatenate(every)
+    ends = np.concatenate([np.where(c.has_upper, c.upper[:, 0], c.lower[:, 0]) for c in trials])
     if not len(ends):
         return [(np.empty((0, 1)), np.empty(0)) for _ in trials]
     levels = np.unique(np.quantile(ends, np.linspace(0.05, 0.95, _BINS), method="nearest"))
@@ -323,13 +308,7 @@ def _capacity_verdicts(trials: Sequence[Trials]) -> list[tuple[Array, Array]]:
 
 def _intensity_grid(every: Sequence[_FittedTrials], measure: int, count: int) -> Array:
     """Return intensities from the least to the greatest, with equal ratios."""
-    ends = np.concatenate(
-        [
-            values[has, measure]
-            for trials in (fitted.trials for fitted in every)
-            for values, has in ((trials.lower, trials.has_lower), (trials.upper, trials.has_upper))
-        ]
-    )
+    ends = np.concatenate([fitted.trials.known_ends()[:, 1 + measure] for fitted in every])
     least, most = (float(ends.min()), float(ends.max())) if len(ends) else (-1.0, 1.0)
     reach = 0.0 if most > least else 1.0
     return np.exp(np.linspace(least - reach, most + reach, count))

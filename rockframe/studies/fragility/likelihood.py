@@ -74,21 +74,17 @@ def fit(trials: Trials, bands: Bands) -> Fit:
         return fitted
     if bands is Bands.SANDWICH:
         of_trial, weight = scores(trials, fitted.coefficients), trials.weight
-        if trials.cluster is None:
-            cluster_scores = of_trial / weight[:, None]
-        else:
-            cluster_scores = cluster_sums(of_trial, trials.cluster)
-            weight = np.ones(len(cluster_scores))
-        return replace(fitted, covariance=sandwich(fitted.covariance, cluster_scores, weight))
+        of_cluster = of_trial / weight[:, None]
+        if trials.cluster is not None:
+            of_cluster = cluster_sums(of_trial, trials.cluster)
+            weight = np.ones(len(of_cluster))
+        return replace(fitted, covariance=sandwich(fitted.covariance, of_cluster, weight))
     if bands is Bands.JACKKNIFE:
         subsets = list(_leave_one_out(trials))
         rows = np.array([_refit(subset, fitted.coefficients) for subset, _ in subsets])
         leave_one_out = rows, np.array([alike for _, alike in subsets])
-        return replace(
-            fitted,
-            covariance=jackknife(fitted.coefficients, *leave_one_out),
-            leave_one_out=leave_one_out,
-        )
+        covariance = jackknife(fitted.coefficients, *leave_one_out)
+        return replace(fitted, covariance=covariance, leave_one_out=leave_one_out)
     return fitted
 
 
@@ -159,8 +155,7 @@ def _maximum_likelihood(trials: Trials) -> Fit:
         reason = FragilityStatus.NOT_RISING
     if reason is not None:
         return Fit.none(reason, trials.measures)
-    upper, lower = _design(trials)
-    ends = np.concatenate([upper[trials.has_upper], lower[trials.has_lower]])
+    ends = trials.known_ends()
     middle, spread = ends[:, 1:].mean(axis=0), ends[:, 1:].std(axis=0)
     size = 1 + trials.measures
     # coefficients of measures that are centred and have unit spread are of similar size
@@ -281,7 +276,9 @@ def boundary(trials: Trials, fitted: Fit, level: float) -> Array:
             reach = np.where(impossible | inside, further, reach)
         for _ in range(60):  # Newton's method: of a convex function it converges from above
             over = excess(reach)
-            slope = -2.0 * _slopes_along(trials, best[:, None] + reach * ray, ray)
+            at_upper, at_lower = _densities(*_etas(trials, best[:, None] + reach * ray))
+            upper, lower = trials.design
+            slope = -2.0 * (trials.weight @ (at_upper * (upper @ ray) - at_lower * (lower @ ray)))
             step = np.divide(over, slope, out=np.zeros_like(over), where=over > 0.0)
             reach = np.maximum(reach - step, 1e-3 * reach)
             if np.all(np.abs(step) <= 1e-10 * reach):
@@ -297,25 +294,23 @@ def boundary(trials: Trials, fitted: Fit, level: float) -> Array:
 def _point_within_region(trials: Trials, drop: float) -> tuple[Array, Array, float]:
     """Return coefficients of separated trials, the information there, and the bound.
 
-    The likelihood of separated trials has a bound but no maximum: it increases with the slope. At
-    the coefficients twice the log-likelihood is at most `drop` below the bound. If the gap is a
-    single intensity at which some trials exceed, their share is the most likely probability there.
+    At the coefficients twice the log-likelihood is at most `drop` below the bound.
     """
     from scipy.special import ndtri
 
     low, high = gap(trials) or (0.0, 0.0)
     at_gap, bound = 0.0, 0.0
-    if low == high:
+    if low == high:  # where some trials exceed: their share is the most likely probability there
         over = float(trials.weight[trials.has_upper & (trials.upper[:, 0] == low)].sum())
         under = float(trials.weight[trials.has_lower & (trials.lower[:, 0] == low)].sum())
         share = over / (over + under)
         at_gap, bound = float(ndtri(share)), over * math.log(share) + under * math.log1p(-share)
     median, slope = 0.5 * (low + high), 1.0
-    at = np.array([at_gap - slope * median, slope])
-    while 2.0 * (bound - float(log_likelihood(trials, at[:, None])[0])) > drop:
-        slope *= 1.1
+    while True:  # the likelihood increases with the slope
         at = np.array([at_gap - slope * median, slope])
-    return at, information(trials, at), bound
+        if not 2.0 * (bound - float(log_likelihood(trials, at[:, None])[0])) > drop:
+            return at, information(trials, at), bound
+        slope *= 1.1
 
 
 def gap(trials: Trials) -> tuple[float, float] | None:
@@ -323,13 +318,6 @@ def gap(trials: Trials) -> tuple[float, float] | None:
     least = float(trials.upper[trials.has_upper].min(initial=np.inf))
     most = float(trials.lower[trials.has_lower].max(initial=-np.inf))
     return (most, least) if most <= least else None
-
-
-def _slopes_along(trials: Trials, coefficients: Array, rays: Array) -> Array:
-    upper, lower = _design(trials)
-    eta_upper, eta_lower = _etas(trials, coefficients)
-    at_upper, at_lower = _densities(eta_upper, eta_lower)
-    return trials.weight @ (at_upper * (upper @ rays) - at_lower * (lower @ rays))
 
 
 def _why_no_maximum(trials: Trials) -> FragilityStatus | None:
@@ -342,30 +330,20 @@ def _why_no_maximum(trials: Trials) -> FragilityStatus | None:
         return FragilityStatus.NONE_EXCEEDED
     if not trials.has_lower.any():
         return FragilityStatus.ALL_EXCEEDED
-    upper, lower = _design(trials)
-    ends = np.concatenate([upper[trials.has_upper], lower[trials.has_lower]])
+    ends = trials.known_ends()
     rounding = SAME_INTENSITY * math.sqrt(len(ends))
     if np.linalg.matrix_rank(ends - ends.mean(axis=0), rounding) < trials.measures:
         return FragilityStatus.ONE_INTENSITY
-    signed = np.concatenate([upper[trials.has_upper], -lower[trials.has_lower]])
-    signed = np.unique(signed, axis=0)
+    signed = np.unique(trials.known_ends(-1.0), axis=0)
     result: Any = optimize.linprog(
         -signed.sum(axis=0), A_ub=-signed, b_ub=np.zeros(len(signed)), bounds=(-1.0, 1.0)
     )
     return FragilityStatus.SEPARATED if -result.fun > 1e-9 * np.abs(signed).sum() else None
 
 
-def _design(trials: Trials) -> tuple[Array, Array]:
-    """Return ones and logarithms of both ends; an open end has zeros."""
-    count = len(trials.weight)
-    upper = np.column_stack([np.ones(count), trials.upper]) * trials.has_upper[:, None]
-    lower = np.column_stack([np.ones(count), trials.lower]) * trials.has_lower[:, None]
-    return upper, lower
-
-
 def _etas(trials: Trials, coefficients: Array) -> tuple[Array, Array]:
     """Return eta at both ends, infinite where one is open; shape (trials, sets)."""
-    upper, lower = _design(trials)
+    upper, lower = trials.design
     eta_upper = np.where(trials.has_upper[:, None], upper @ coefficients, np.inf)
     eta_lower = np.where(trials.has_lower[:, None], lower @ coefficients, -np.inf)
     return eta_upper, eta_lower
@@ -374,7 +352,7 @@ def _etas(trials: Trials, coefficients: Array) -> tuple[Array, Array]:
 def _ends(trials: Trials, coefficients: Array) -> tuple[Array, Array, Array, Array]:
     """Return the factors of the coefficients at both ends, and eta there."""
     eta_upper, eta_lower = _etas(trials, coefficients[:, None])
-    return *_design(trials), eta_upper[:, 0], eta_lower[:, 0]
+    return *trials.design, eta_upper[:, 0], eta_lower[:, 0]
 
 
 def _densities(upper: Array, lower: Array) -> tuple[Array, Array]:

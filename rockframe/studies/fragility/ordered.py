@@ -41,10 +41,8 @@ def ordered_fits(
             raise StudyError(msg)
     shares = verdicts.mean(axis=1) if verdicts.shape[1] else np.zeros(len(names))
     informative = (shares > 0.0) & (shares < 1.0)
-    fits = [
-        Fit.none(FragilityStatus.ALL_EXCEEDED if share > 0.0 else FragilityStatus.NONE_EXCEEDED, 1)
-        for share in shares
-    ]
+    nothing = FragilityStatus.NONE_EXCEEDED, FragilityStatus.ALL_EXCEEDED
+    fits = [Fit.none(nothing[int(share > 0.0)], 1) for share in shares]
     if not informative.any():
         return fits
     # limit states exceeded by the same runs have the same capacity
@@ -56,12 +54,10 @@ def ordered_fits(
     best = None if one_intensity else _maximum_likelihood(logs, count, len(first))
     if best is None or best[-1] * float(logs.std()) <= ZERO_SLOPE:
         status = FragilityStatus.SEPARATED if best is None else FragilityStatus.NOT_RISING
-        if one_intensity:
-            status = FragilityStatus.ONE_INTENSITY
-        return [
-            Fit.none(status, 1) if is_informative else fit
-            for is_informative, fit in zip(informative, fits, strict=True)
-        ]
+        status = FragilityStatus.ONE_INTENSITY if one_intensity else status
+        for state in np.flatnonzero(informative):
+            fits[state] = Fit.none(status, 1)
+        return fits
     covariance, rows = _covariance(logs, count, motions, best, bands)
     observed = interval_information(*_ends(logs, count, best))
     for state, rank in zip(np.flatnonzero(informative), ranks, strict=True):
@@ -124,9 +120,9 @@ def _maximum_likelihood(
         slope = interval_scores(*ends).sum(axis=0)
         step = np.linalg.lstsq(interval_information(*ends), slope)[0]
         size = 1.0
-        while (
-            size > 1e-10 and not _log_likelihood(scaled, count, at + size * step) >= value - 1e-12
-        ):
+        while size > 1e-10:
+            if _log_likelihood(scaled, count, at + size * step) >= value - 1e-12:
+                break
             size *= 0.5
         at = at + size * step
         value = _log_likelihood(scaled, count, at)
@@ -152,18 +148,15 @@ def _covariance(
     rows = np.full((len(names), len(best)), np.nan)
     for k in range(len(names)):
         is_other = place != k
-        coefficients = _fit_without_motion(logs[is_other], count[is_other], best)
-        if coefficients is not None:
-            rows[k] = coefficients
+        if (found := _fit_without_motion(logs[is_other], count[is_other], best)) is not None:
+            rows[k] = found
     return jackknife(best, rows, np.ones(len(names))), rows
 
 
 def _fit_without_motion(logs: Array, count: AnyArray, best: Array) -> Array | None:
-    """Find the greatest likelihood of some of the runs, from that of all; None without one.
-
-    Limit states between which none of these runs ends have one capacity. Their intercepts would
-    pass one another without end, since no run requires them to be in order.
-    """
+    """Find the greatest likelihood of some of the runs, from that of all; None without one."""
+    # Limit states between which none of these runs ends have one capacity: their intercepts would
+    # pass one another without end, since no run requires them to be in order.
     states = len(best) - 1
     kinds, kind = np.unique(count, return_inverse=True)
     # no run is left, all exceed the first limit state, or none the last

@@ -9,6 +9,7 @@ import json
 import math
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
+from functools import cached_property
 from typing import Any, TypeVar
 
 import numpy as np
@@ -51,8 +52,8 @@ def structures_of(
     runs: xr.Dataset, pooled: Sequence[str], measures: Sequence[object], *, owner: str
 ) -> Structures:
     """Find the structures of a sweep."""
-    axes, own_measures = _changes_of_axes(runs), _own_measures(runs, measures)
-    changed = _structural_axes(axes, own_measures)
+    axes, own_measures = _axes(runs), _own_measures(runs, measures)
+    changed = _structural_axes(runs, own_measures)
     dims = [str(dim) for dim in runs["status"].dims]
     differing = [name for name in changed if name in runs.coords or name in dims]
     missing = [name for name in changed if name not in differing]
@@ -68,7 +69,18 @@ def structures_of(
     unknown_dims = [
         dim for dim in dims if dim not in {*known_dims, *axes, *own_measures, MOTION, CASE}
     ]
-    _check_motions(runs, unknown_dims, owner, named=len(own_measures) < len(measures))
+    if unknown_dims and len(own_measures) < len(measures):
+        msg = (
+            f"{owner}: the sweep had no dimension {', '.join(map(repr, unknown_dims))}; datasets "
+            "that were put together tell the motions of the first alone: fit each of them, or "
+            "give the intensity as a DataArray"
+        )
+        raise StudyError(msg)
+    names = runs.indexes.get(MOTION, pd.Index([]))
+    if not names.is_unique:
+        twice = str(min(names[names.duplicated()]))
+        msg = f"{owner}: the motion {twice!r} stands twice along 'motion'"
+        raise StudyError(msg)
     known = [*(name for name in differing if runs[name].dims), *unknown_dims]
     if CASE in pooled and CASE in dims:  # stands for all columns of its table
         columns = [name for name in known if CASE in runs[name].dims]
@@ -93,7 +105,7 @@ def check_one_structure(
 ) -> list[str]:
     """Refuse runs of several structures, except over the axes `pooled`, which are returned."""
     pooled = checked_list(pooled, owner=owner, name="pooled", of="names")
-    changed = _structural_axes(_changes_of_axes(runs), _own_measures(runs, measures))
+    changed = _structural_axes(runs, _own_measures(runs, measures))
     several = [
         name
         for name in changed
@@ -118,7 +130,7 @@ def check_one_structure(
 def attributes_of_system(runs: xr.Dataset, *, changed: bool | None = None) -> dict[str, Any]:
     """Return the attributes that describe the system of runs, which a sweep may have changed."""
     if changed is None:
-        changed = any(name in runs.coords for name in _structural_axes(_changes_of_axes(runs), ()))
+        changed = any(name in runs.coords for name in _structural_axes(runs))
     names = ("model",) if changed else ("model", "system_json")
     return {name: runs.attrs[name] for name in names if name in runs.attrs}
 
@@ -136,7 +148,7 @@ def _check_pooled(
         raise ComponentError(msg)
 
 
-def _changes_of_axes(runs: xr.Dataset) -> dict[str, str]:
+def _axes(runs: xr.Dataset) -> dict[str, str]:
     """Return what each axis of a sweep changes."""
     return {axis["name"]: axis["changes"] for axis in json.loads(runs.attrs["axes_json"])}
 
@@ -150,27 +162,9 @@ def _own_measures(runs: xr.Dataset, values: Sequence[object]) -> list[str]:
     ]  # fmt: skip
 
 
-def _structural_axes(axes: Mapping[str, str], own: Sequence[str]) -> list[str]:
+def _structural_axes(runs: xr.Dataset, own: Sequence[str] = ()) -> list[str]:
     """Return the axes along which structures differ."""
-    return [name for name in axes if name not in own and axes[name] != Changes.MOTION]
-
-
-def _check_motions(
-    runs: xr.Dataset, unknown_dims: Sequence[str], owner: str, *, named: bool
-) -> None:
-    """Refuse combined datasets whose motions are unknown."""
-    if unknown_dims and named:
-        msg = (
-            f"{owner}: the sweep had no dimension {', '.join(map(repr, unknown_dims))}; datasets "
-            "that were put together tell the motions of the first alone: fit each of them, or "
-            "give the intensity as a DataArray"
-        )
-        raise StudyError(msg)
-    if MOTION in runs.dims and MOTION in runs.coords:
-        names, count = np.unique(runs[MOTION].to_numpy().astype(str), return_counts=True)
-        if count.max(initial=0) > 1:
-            msg = f"{owner}: the motion {str(names[count > 1][0])!r} stands twice along 'motion'"
-            raise StudyError(msg)
+    return [n for n, changes in _axes(runs).items() if n not in own and changes != Changes.MOTION]
 
 
 def _group_structures(
@@ -190,27 +184,19 @@ def _group_structures(
         )
         if not columns and not shared:
             continue
-        first, group = _group_rows(
-            [runs[name].to_numpy() for name in columns], runs.sizes[dim], shared
-        )
-        groups[dim] = group
+        # without a column each place is a structure of its own; otherwise equal rows are of one
+        table = pd.DataFrame({name: runs[name].to_numpy() for name in columns})
+        places = np.arange(runs.sizes[dim])
+        if not shared:
+            places = table.groupby(columns, sort=False, dropna=False).ngroup().to_numpy()
+        groups[dim] = places
+        first = np.unique(groups[dim], return_index=True)[1]
         # labels of a dimension with several levels cannot be stored in a file
         plain = dim in runs.coords and runs.indexes[dim].nlevels == 1
         for name in (*columns, *([dim] if plain else [])):
             values = runs[name]
             coordinates[name] = xr.Variable(dim, values.to_numpy()[first], values.attrs)
     return Structures(groups, coordinates)
-
-
-def _group_rows(
-    columns: Sequence[AnyArray], size: int, separate: bool
-) -> tuple[AnyArray, AnyArray]:
-    """Return the first place of each group of equal rows, and the group of each place."""
-    if separate:
-        return np.arange(size), np.arange(size)
-    table = pd.DataFrame(dict(enumerate(columns)))
-    group = table.groupby([*table], sort=False, dropna=False).ngroup().to_numpy()
-    return np.unique(group, return_index=True)[1], group
 
 
 @dataclass(frozen=True, eq=False)
@@ -251,6 +237,18 @@ class Trials:
         """Number of intensity measures."""
         return self.lower.shape[1]
 
+    @cached_property
+    def design(self) -> tuple[Array, Array]:
+        """Ones and logarithms of the upper and the lower ends; an open end has zeros."""
+        ones = np.ones(len(self.weight))
+        upper = np.column_stack([ones, self.upper]) * self.has_upper[:, None]
+        return upper, np.column_stack([ones, self.lower]) * self.has_lower[:, None]
+
+    def known_ends(self, sign: float = 1.0) -> Array:
+        """Return the rows of all upper ends, and those of all lower ones with a sign."""
+        upper, lower = self.design
+        return np.concatenate([upper[self.has_upper], sign * lower[self.has_lower]])
+
 
 @dataclass(frozen=True, eq=False)
 class StructureTrials:
@@ -288,10 +286,7 @@ def trials_of_runs(
 def trials_of_capacities(
     analysis: xr.Dataset, known: xr.DataArray, measures: Sequence[xr.DataArray]
 ) -> StructureTrials:
-    """Return the trials of a dynamic analysis, one for each line, from its first exceedance.
-
-    A line is a motion, and a value of all else that is taken for one population.
-    """
+    """Return the trials of an analysis, one for each line, from its first exceedance."""
     sizes = {str(dim): size for dim, size in known.sizes.items() if dim != SCALE}
     scales = analysis[SCALE].to_numpy()
     below, above = _first_brackets(analysis, known, sizes)

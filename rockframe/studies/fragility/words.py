@@ -1,7 +1,7 @@
 """A fragility in words: what was fitted, what was left out, and how often its bounds hold."""
 
 import math
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from typing import Final, NamedTuple
 
 import numpy as np
@@ -17,8 +17,11 @@ from rockframe.studies.sweeps.axes import labels_in_unit
 
 POOLED_ATTRIBUTE: Final = "pooled"
 """Attribute that names the structures that were treated as one."""
-_DIGITS: Final = (4, 3)
-"""Of medians and of dispersions."""
+
+
+def pooled_attribute(axes: Sequence[str]) -> dict[str, str]:
+    """Return the attribute that names the structures that were treated as one, if there are any."""
+    return {POOLED_ATTRIBUTE: ", ".join(axes)} if axes else {}
 
 
 class Coverage(NamedTuple):
@@ -48,10 +51,7 @@ def enough_trials(bands: Bands, independent: int) -> bool:
 
 
 def fragility_sentences(fragility: xr.Dataset) -> str:
-    """Say what was fitted to the last limit state, what was left out, and what bounds are.
-
-    If it has no fit, as when no run overturns, also describe the last limit state with a fit.
-    """
+    """Say what was fitted to the last limit state, what was left out, and what bounds are."""
     last = fragility.isel({dim: -1 for dim in LIMIT_STATE if dim in fragility.dims})
     status = last["fragility_status"].to_numpy().ravel()
     fitted = status == FragilityStatus.FITTED
@@ -67,7 +67,14 @@ def fragility_sentences(fragility: xr.Dataset) -> str:
             kind="trials" if kind == "trials" else "motions", measures=len(measures_of(last)),
         )  # fmt: skip
     else:
-        messages += _other_fit_sentences(fragility)
+        # as when no run overturns: the last limit state with a fit
+        for number in reversed(range(fragility.sizes.get(*LIMIT_STATE, 1) - 1)):
+            state = fragility.isel({LIMIT_STATE[0]: number})
+            status = state["fragility_status"].to_numpy().ravel()
+            fitted = status == FragilityStatus.FITTED
+            if fitted.any() or (status == FragilityStatus.SEPARATED).any():
+                messages.append(_fit_sentence(state, status, fitted))
+                break
     if last.attrs.get("dispersions") == "common":
         messages.append("One dispersion is common to all limit states.")
     known, left_out = (int(last[f"{name}_count"].sum()) for name in ("trial", "left_out"))
@@ -93,17 +100,6 @@ def verdict_of_fragility(dataset: xr.Dataset) -> str:
     return text if text.startswith(sentences) else sentences
 
 
-def _other_fit_sentences(fragility: xr.Dataset) -> list[str]:
-    """Describe the last limit state with a fit, if it is not the last of all."""
-    for number in reversed(range(fragility.sizes.get(*LIMIT_STATE, 1) - 1)):
-        state = fragility.isel({LIMIT_STATE[0]: number})
-        status = state["fragility_status"].to_numpy().ravel()
-        fitted = status == FragilityStatus.FITTED
-        if fitted.any() or (status == FragilityStatus.SEPARATED).any():
-            return [_fit_sentence(state, status, fitted)]
-    return []
-
-
 def measures_of(fragility: xr.Dataset) -> list[str]:
     """Return the intensity measures of a fragility."""
     status = fragility["fragility_status"].dims
@@ -115,15 +111,12 @@ def in_own_units(fragility: xr.Dataset, measure: str, *, owner: str) -> xr.Datas
     if measure not in SCHEMA:  # one of the user's own
         return fragility
     unit = str(SCHEMA[measure].unit)
-    names = [
-        name for name in map(str, fragility.variables)
-        if name in (measure, "stripe_intensity") or name.startswith("median_intensity")
-    ]  # fmt: skip
-    converted = {name: labels_in_unit(fragility[name], unit, owner=owner) for name in names}
-    labels = {name: values for name, values in converted.items() if name in fragility.coords}
-    return fragility.assign_coords(labels).assign({
-        name: values for name, values in converted.items() if name not in labels
-    })  # fmt: skip
+    converted = {
+        name: labels_in_unit(fragility[name], unit, owner=owner).variable
+        for name in fragility.variables
+        if name in (measure, "stripe_intensity") or str(name).startswith("median_intensity")
+    }
+    return fragility.assign(converted)
 
 
 def _fit_sentence(last: xr.Dataset, status: AnyArray, fitted: AnyArray) -> str:
@@ -147,7 +140,7 @@ def _fit_sentence(last: xr.Dataset, status: AnyArray, fitted: AnyArray) -> str:
     unit = unit_suffix_of(last["median_intensity"].attrs)
     median, dispersion = (
         _range_words(last[name].to_numpy().ravel()[fitted], digits)
-        for name, digits in zip(("median_intensity", "dispersion"), _DIGITS, strict=True)
+        for name, digits in (("median_intensity", 4), ("dispersion", 3))
     )
     return f"Capacity against {head}: median {over} {median}{unit}, dispersion {dispersion}{note}."
 
@@ -188,8 +181,7 @@ def _near_separation_sentences(last: xr.Dataset, fitted: AnyArray) -> Iterator[s
         return
     unbounded = np.isnan(last["dispersion_upper_bound"].to_numpy().ravel()[fitted])
     enough = last["independent_count"].to_numpy().ravel()[fitted] >= min(COVERAGE[Bands.JACKKNIFE])
-    count = int((unbounded & enough).sum())
-    if count:
+    if count := int((unbounded & enough).sum()):
         of = "" if len(fitted) == 1 else f" of {count} structure{'s' if count > 1 else ''}"
         yield (
             f"There are no bounds{of}: without one of the motions there is no fit, for hardly any "

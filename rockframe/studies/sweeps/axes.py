@@ -4,7 +4,7 @@ import math
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import dataclass
-from functools import cached_property
+from functools import cached_property, partial
 from numbers import Real
 from typing import Any, Final, cast
 
@@ -73,10 +73,8 @@ def read_numbers(value: object, measure: Measure, name: str, *, owner: str = OWN
             value = decimal_products([float(number) for number in as_list(pair[0])], factor)
         numbers = as_list(_as_python(value))
         if not all(type(number) is float and math.isfinite(number) for number in numbers):
-            example = measure.example
-            numbers = [
-                to_ratio(number, owner=owner, name=name, example=example) for number in numbers
-            ]
+            read = partial(to_ratio, owner=owner, name=name, example=measure.example)
+            numbers = [read(number) for number in numbers]
     else:
         _refuse_bare_numbers(value, measure, name, owner)
         numbers = to_si_values(_as_python(value), measure, owner=owner, name=name)
@@ -118,13 +116,10 @@ def read_words(value: object, read: Callable[[object], object]) -> AnyArray:
 def read_free_values(
     value: object, name: str, *, owner: str = OWNER, expected: str = ""
 ) -> tuple[AnyArray, str | None]:
-    """Read values for an argument whose meaning only the user knows.
-
-    A unit of several quantities, such as ``g``, is taken as the `expected` one.
-    """
+    """Read values for an argument whose meaning only the user knows."""
     value = _with_own_unit(value)
     unit = _unit_of(value)
-    if unit is not None:
+    if unit is not None:  # one of several quantities, such as g, is taken as the expected one
         measure = _measure_of(unit, name, owner, expected)
         return read_numbers(value, measure, name, owner=owner), str(measure.unit)
     items = _as_python(as_list(value))
@@ -173,11 +168,9 @@ def _unit_of(value: object) -> str | None:
         return f"{first.units:~}" or None
     if isinstance(first, str):
         number, _, unit = first.strip().partition(" ")
-        try:
+        with suppress(ValueError):  # a word
             float(number)
-        except ValueError:
-            return None
-        return unit or None
+            return unit or None
     return None
 
 
@@ -221,10 +214,8 @@ def labels_in_unit(labels: xr.DataArray, unit: str | None, *, owner: str) -> xr.
         return labels
     measure = Measure("a value", Unit(unit), f"1 {unit}")
     factor = read_number(f"1 {current}", measure, owner=owner, name=str(labels.name))
-    converted = np.reshape(
-        decimal_products(np.ravel(labels).astype(float).tolist(), factor), labels.shape
-    )
-    attributes = {**labels.attrs, "units": unit}
+    numbers = decimal_products(np.ravel(labels).astype(float).tolist(), factor)
+    converted, attributes = np.reshape(numbers, labels.shape), {**labels.attrs, "units": unit}
     return xr.DataArray(converted, labels.coords, labels.dims, labels.name, attributes)
 
 
@@ -280,11 +271,8 @@ class Grid:
 
     @cached_property
     def order(self) -> tuple[str, ...]:
-        """Dimensions in the order in which cases run, the last one varying fastest.
-
-        Neighbours share their motion and its scale as far as possible, so that each is prepared
-        once.
-        """
+        """Dimensions in the order in which cases run, the last one varying fastest."""
+        # neighbours share their motion and its scale as far as possible: each is prepared once
         scales = [axis.name for axis in self.axes if axis.changes is Changes.MOTION]
         other_axes = [axis.name for axis in self.axes if axis.changes is not Changes.MOTION]
         return tuple(n for n in (MOTION, *scales, CASE, *other_axes) if n in self.sizes)
@@ -300,18 +288,13 @@ class Grid:
         return dict(zip(self.order, indices, strict=True))
 
     def case_numbers(self, key: Sequence[Any]) -> AnyArray:
-        """Return the numbers, in the order of running, of the cases at places along all dimensions.
-
-        For each dimension, in the order of `sizes`: a place, a slice or a sequence of places.
-        """
+        """Return the numbers of cases at places, slices or sequences of places along dimensions."""
         numbers = np.zeros((), dtype=np.int64)
         for (name, size), index in zip(self.sizes.items(), key, strict=True):
             later = self.order[self.order.index(name) + 1 :]
             step = math.prod(self.sizes[dim] for dim in later)
-            indices = (
-                np.arange(*index.indices(size)) if isinstance(index, slice) else np.asarray(index)
-            )
-            numbers = np.add.outer(numbers, np.where(indices < 0, indices + size, indices) * step)
+            places = range(*index.indices(size)) if isinstance(index, slice) else index
+            numbers = np.add.outer(numbers, np.asarray(places, dtype=np.int64) % size * step)
         return numbers
 
     def in_dimension_order(self, values: AnyArray) -> AnyArray:

@@ -12,7 +12,6 @@ from typing import Any, Final, cast
 import numpy as np
 import xarray as xr
 
-from rockframe.arguments import checked_dataset
 from rockframe.components import InitialState
 from rockframe.errors import SchemaError, StudyError, did_you_mean, short_repr
 from rockframe.motion import GroundMotion
@@ -128,11 +127,7 @@ def case(
     >>> float(alone.peak_rotation) == float(runs.peak_rotation.sel(scale=1.4).squeeze())
     True
     """
-    if isinstance(runs, xr.Dataset):
-        dataset = checked_dataset(runs, owner=_OWNER)
-        stored = store_of(dataset)
-    else:
-        dataset, stored = open_study(runs), Store.open(Path(runs))
+    dataset = runs if isinstance(runs, xr.Dataset) else open_study(runs)
     attributes: Mapping[str, Any] = cast("Mapping[str, Any]", dataset.attrs)
     if not set(SWEEP_ATTRIBUTES) <= set(attributes):
         msg = (
@@ -151,8 +146,8 @@ def case(
         value = _value(dataset, described["name"], indices, described["unit"])
         values[Axis.from_dict(described, np.array([value]))] = value
     name = _value(dataset, MOTION, indices)
-    motion = unscaled_motions(attributes, [name], motions, stored)[name]
-    swept = _scene(None if scene is None else scene_of(scene), attributes, _OWNER)
+    motion = known_motions(dataset, motions, names=[name], needed=True).get(name)
+    swept = _scene(scene, attributes, _OWNER)
     of_scene = {axis: value for axis, value in values.items() if axis.changes in SYSTEM_AXES}
     system = swept.system(of_scene)
     motion = system.motion if motion is None else motion
@@ -167,7 +162,7 @@ def case(
     for axis, value in values.items():
         if axis.changes is Changes.MOTION and motion is not None:
             motion = motion_of_case(motion, axis.name, value, attributes.get("spectral_period"))
-    if REPEATED in dataset and _value_of(dataset[REPEATED], indices) == 1.0:
+    if REPEATED in dataset and _value_at(dataset[REPEATED], indices) == 1.0:
         options["accuracy"] = LEVELS[REPEATED_LEVEL]
     return SweepCase(system, motion, options)
 
@@ -245,9 +240,8 @@ def _value(
     dataset: xr.Dataset, name: str, indices: Mapping[str, int], unit: str | None = None
 ) -> Any:
     """Return the value of a coordinate in the case, also if it was selected before."""
-    return _value_of(
-        labels_in_unit(_coordinate(dataset, name, _OWNER), unit, owner=_OWNER), indices
-    )
+    labels = labels_in_unit(_coordinate(dataset, name, _OWNER), unit, owner=_OWNER)
+    return _value_at(labels, indices)
 
 
 def _coordinate(dataset: xr.Dataset, name: str, owner: str) -> xr.DataArray:
@@ -257,11 +251,12 @@ def _coordinate(dataset: xr.Dataset, name: str, owner: str) -> xr.DataArray:
     return dataset[name]
 
 
-def _value_of(labels: xr.DataArray, indices: Mapping[str, int]) -> Any:
+def _value_at(labels: xr.DataArray, indices: Mapping[str, int]) -> Any:
     return labels.isel({dim: indices[str(dim)] for dim in labels.dims}).item()
 
 
-def _scene(swept: SweptScene | None, attributes: Mapping[str, Any], owner: str) -> SweptScene:
+def _scene(given: object, attributes: Mapping[str, Any], owner: str) -> SweptScene:
+    swept = None if given is None else scene_of(given)
     if "system_json" in attributes:
         return scene_of(System.from_dict(json.loads(attributes["system_json"])))
     if swept is not None:
@@ -275,29 +270,34 @@ def _scene(swept: SweptScene | None, attributes: Mapping[str, Any], owner: str) 
     raise StudyError(msg)
 
 
-def unscaled_motions(
-    attributes: Mapping[str, Any],
-    names: Iterable[str],
-    value: object,
-    stored: Store | None,
+def known_motions(
+    runs: xr.Dataset,
+    value: object = None,
     *,
-    needed: bool = True,
+    names: Iterable[str] | None = None,
+    needed: bool = False,
     owner: str = _OWNER,
-) -> dict[str, GroundMotion | None]:
-    """Return the available motions of a sweep as they were before scaling."""
+) -> dict[str, GroundMotion]:
+    """Return the available motions of a sweep, or those of some names, before they were scaled."""
+    attributes: Mapping[str, Any] = cast("Mapping[str, Any]", runs.attrs)
     every = json.loads(attributes["motion_names"]), json.loads(attributes["motions_json"])
-    described = dict(zip(*every, strict=True))
-    study = cached_study(attributes)
+    described: dict[str, Any] = dict(zip(*every, strict=True))
+    if names is None:
+        used = set(runs[MOTION].to_numpy().astype(str).ravel().tolist()) if MOTION in runs else None
+        names = [name for name in described if used is None or name in used]
+    study, stored = cached_study(attributes), _store_of(runs)
     available = {} if study is None else study.motions
     if stored is not None:
         available = stored.motions()
     given = {} if value is None else named_motions(value)
     records = {motion.sha256: motion for motion in given.values()}
-    motions: dict[str, GroundMotion | None] = {}
+    motions: dict[str, GroundMotion] = {}
     for name in names:
         description = described[name]
-        if description is None or name in available:
-            motions[name] = None if description is None else available[name]
+        if description is None:
+            continue
+        if (known := available.get(name)) is not None:
+            motions[name] = known
         elif description.get("constructor"):
             motions[name] = GroundMotion.from_dict(description)
         elif description["sha256"] in records:
@@ -310,22 +310,10 @@ def unscaled_motions(
     return motions
 
 
-def store_of(runs: xr.Dataset) -> Store | None:
+def _store_of(runs: xr.Dataset) -> Store | None:
     """Return the folder that a dataset was opened from, if it was and holds its study."""
     try:
         store = Store.open(Path(str(runs.encoding.get("source", ""))))
     except StudyError:
         return None
     return store if store.digest == runs.attrs.get("study_sha256") else None
-
-
-def known_motions(
-    runs: xr.Dataset, motions: object = None, *, needed: bool = False, owner: str = _OWNER
-) -> dict[str, GroundMotion]:
-    """Return the available motions of a sweep by name, before they were scaled."""
-    names: list[str] = json.loads(runs.attrs["motion_names"])
-    if MOTION in runs:
-        used = set(runs[MOTION].to_numpy().astype(str).ravel().tolist())
-        names = [name for name in names if name in used]
-    every = unscaled_motions(runs.attrs, names, motions, store_of(runs), needed=needed, owner=owner)
-    return {name: motion for name, motion in every.items() if motion is not None}

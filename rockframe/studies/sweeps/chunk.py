@@ -24,7 +24,6 @@ from rockframe.simulation.plan import run_length
 from rockframe.simulation.run import NONE, compute_response, in_motion, run_scalars
 from rockframe.simulation.soundness import STILL_MOVING
 from rockframe.solve.accuracy import LEVELS, AccuracyLevel
-from rockframe.studies.sweeps.cases_of_job import CasesOfJob
 from rockframe.studies.sweeps.lanes import (
     Failed,
     Finished,
@@ -33,7 +32,7 @@ from rockframe.studies.sweeps.lanes import (
     run_assembled_singly,
     run_assembled_together,
 )
-from rockframe.studies.sweeps.study import MIN_CASES_IN_LANES, Histories, SweepJob
+from rockframe.studies.sweeps.study import MIN_CASES_IN_LANES, CasesOfJob, Histories, SweepJob
 
 SCREEN: Final = "screen"
 """The accuracy argument of screened sweeps."""
@@ -70,19 +69,16 @@ class CaseResults:
 def _assign(
     columns: dict[str, AnyArray], count: int, name: str, where: Any, values: AnyArray | float
 ) -> None:
-    """Put values of some cases, or of one, into a column.
-
-    Cases may have different numbers of bodies or restrainers: a column has room for the largest
-    number, with NaN where a case has fewer.
-    """
+    """Put values of some cases, or of one, into a column."""
     extra = np.shape(values)[np.ndim(where) if not isinstance(where, slice) else 1 :]
-    old_shape = columns[name].shape[1:] if name in columns else extra
-    shape = tuple(map(max, old_shape, extra))
-    if name not in columns or old_shape != shape:
-        wider = np.full((count, *shape), np.nan)
-        if name in columns:
-            wider[(slice(None), *map(slice, old_shape))] = columns[name]
-        columns[name] = wider
+    if name not in columns:
+        columns[name] = np.full((count, *extra), np.nan)
+    old = columns[name]
+    # cases may have different numbers of bodies or restrainers: there is room for the most
+    shape = tuple(map(max, old.shape[1:], extra))
+    if old.shape[1:] != shape:
+        columns[name] = np.full((count, *shape), np.nan)
+        columns[name][tuple(map(slice, old.shape))] = old
     columns[name][(where, *map(slice, extra))] = values
 
 
@@ -128,10 +124,8 @@ def run_cases(
     if compile_timeout is not None:
         ready = compilation_check(compile_timeout)
         for several in run_assembled_together(cases, which, stopped, ready):
-            if isinstance(several, Finished):
-                remaining.discard(several.case)
-            else:
-                remaining.difference_update(several.cases.tolist())
+            ran = [several.case] if isinstance(several, Finished) else several.cases.tolist()
+            remaining.difference_update(ran)
             yield several
         for outcome in run_assembled_singly(cases, sorted(remaining), stopped, ready):
             if isinstance(outcome, Failed):
@@ -165,25 +159,8 @@ def verdict_looks(
     return [(run.case, look_at(run.system.setting, run.summary, duration))]
 
 
-def doubtful_cases(
-    cases: CasesOfJob, first: Mapping[int, Look], stopped: Callable[[], bool]
-) -> list[int]:
-    """Run cases a second time, and give those whose verdict is not sure."""
-    doubtful = set(first)
-    again = cases.with_change(second_look)
-    for run in run_cases(again, sorted(first), stopped, cases.job.compile_timeout):
-        for case, look in verdict_looks(cases, run):
-            if is_sure(first[case], look):
-                doubtful.discard(case)
-    return sorted(doubtful)
-
-
 def run_chunk(job: SweepJob, stopped: Callable[[], bool] = lambda: False) -> CaseResults | None:
-    """Run the cases of a job: side by side where they can, else one after the other.
-
-    The result of a case depends on that case alone, and equals that of
-    :meth:`rockframe.System.simulate`.
-    """
+    """Run the cases of a job; each result equals that of :meth:`rockframe.System.simulate`."""
     cases = CasesOfJob(job)
     collected = _Collector(len(cases), job)
     looks: dict[int, Look] = {}
@@ -192,7 +169,14 @@ def run_chunk(job: SweepJob, stopped: Callable[[], bool] = lambda: False) -> Cas
         if job.screened:
             looks.update(verdict_looks(cases, run))
     if job.screened and not stopped():
-        doubtful = doubtful_cases(cases, looks, stopped)
+        again = cases.with_change(second_look)
+        sure = {
+            case
+            for run in run_cases(again, sorted(looks), stopped, job.compile_timeout)
+            for case, look in verdict_looks(cases, run)
+            if is_sure(looks[case], look)
+        }
+        doubtful = sorted(set(looks) - sure)
         collected.add_screening(looks, doubtful)
         compile_timeout = None
         if job.compile_timeout is not None and len(doubtful) >= MIN_CASES_IN_LANES:

@@ -194,9 +194,8 @@ def run_chunks(
         if not interrupted:
             raise
         done = {future for future in running if future.done() and not future.cancelled()}
-        _collect_results(
-            {future for future in done if future.exception() is None}, running, collect
-        )
+        succeeded = {future for future in done if future.exception() is None}
+        _collect_results(succeeded, running, collect)
         return False
     finally:
         if executor is None:  # threads notice the interrupt later, as when they have compiled

@@ -37,11 +37,8 @@ def description_of(value: object) -> Any:
             **_source_of_class(type(value)),
         }
     if is_dataclass(value) and not isinstance(value, type):
-        entries = {
-            field.name: description_of(getattr(value, field.name))
-            for field in fields(value)
-            if field.compare
-        }
+        names = [field.name for field in fields(value) if field.compare]
+        entries = {name: description_of(getattr(value, name)) for name in names}
         return {"kind": type(value).__name__, **entries}
     if isinstance(value, Mapping):
         items = cast("Mapping[Any, Any]", value).items()
@@ -109,10 +106,7 @@ def _describe_code(code: CodeType | None) -> list[Any]:
     """Describe compiled code, and the code of functions inside it."""
     if code is None:
         return []
-    constants = [
-        _describe_code(constant) if isinstance(constant, CodeType) else repr(constant)
-        for constant in code.co_consts
-    ]
+    constants = [_describe_code(c) if isinstance(c, CodeType) else repr(c) for c in code.co_consts]
     return [code.co_code.hex(), code.co_names, constants]
 
 
@@ -123,13 +117,10 @@ def name_of_function(function: Callable[..., object]) -> str:
 
 @cache
 def _source_of_class(kind: type) -> dict[str, str]:
-    """Describe the source of a class from outside rockframe, with everything defined beside it.
-
-    The equations of a user's base are the classes, functions and constants beside its component.
-    Python's own classes, such as `typing.Generic`, are left out.
-    """
+    """Describe the source of a class from outside rockframe, with everything defined beside it."""
+    # the equations of a user's base are the classes, functions and constants beside its component
     texts: list[Any] = []
-    left_out = {_PACKAGE, *sys.stdlib_module_names}
+    left_out = {_PACKAGE, *sys.stdlib_module_names}  # Python's own, such as `typing.Generic`
     for base in kind.__mro__:
         module = inspect.getmodule(base)
         if module is None or module.__name__.partition(".")[0] in left_out:

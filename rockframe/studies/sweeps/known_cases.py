@@ -95,13 +95,12 @@ class _Source:
                 f"{', '.join(kinds[1])}"
             )
             raise StudyError(msg)
-        digests = [
-            [digest for _, digest in described["motions"]] for described in (description, requested)
-        ]
-        self._positions = {MOTION: _positions(digests[1], digests[0])}
-        stored_values = {axis.name: axis.values.tolist() for axis in self._grid.axes}
-        for axis in study.grid.axes:
-            self._positions[axis.name] = _positions(axis.values.tolist(), stored_values[axis.name])
+        values, stored = (  # of the axes, and digests of the motions
+            {MOTION: [digest for _, digest in described["motions"]],
+             **{axis.name: axis.values.tolist() for axis in grid.axes}}
+            for described, grid in ((requested, study.grid), (description, self._grid))
+        )  # fmt: skip
+        self._positions = {dim: _positions(values[dim], stored[dim]) for dim in values}
 
     def numbers(self, places: Mapping[str, AnyArray]) -> AnyArray:
         """Return the numbers that cases have here, by their places in the other study."""

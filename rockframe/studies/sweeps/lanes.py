@@ -38,7 +38,7 @@ from rockframe.solve.lanes.integrate import (
 )
 from rockframe.solve.trajectory import Summary
 from rockframe.solve.workspace import Status
-from rockframe.studies.sweeps.cases_of_job import CasesOfJob
+from rockframe.studies.sweeps.study import CasesOfJob
 from rockframe.system.assembly import Assembly
 
 BATCH_SIZE: Final = 512
@@ -301,14 +301,13 @@ def _group_result(cases: CasesOfJob, some: CaseIndices, summary: Summary) -> Fin
     if not has_no_cautions(system, summary):
         raise SingleCaseOnly
     scalars = run_scalars(system, summary, missing)
-    moving = in_motion(system, summary, missing)
+    warnings = [*messages, *([STILL_MOVING] if in_motion(system, summary, missing) else [])]
     duration = run_length(cases.job.arguments, cases.unscaled_motion(int(some[0])))
     look = look_at(system.setting, summary, duration)
     if missing:
         raise SingleCaseOnly
-    return FinishedGroup(
-        some, summary.status, [*messages, *([STILL_MOVING] if moving else [])],
-        {name: value.values if isinstance(value, CaseArray) else value
-         for name, value in scalars.items()},
-        look,
-    )  # fmt: skip
+    arrays: dict[str, AnyArray | float] = {
+        name: value.values if isinstance(value, CaseArray) else value
+        for name, value in scalars.items()
+    }
+    return FinishedGroup(some, summary.status, warnings, arrays, look)

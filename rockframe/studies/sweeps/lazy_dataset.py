@@ -35,10 +35,7 @@ _Key: TypeAlias = tuple[Any, ...]
 
 
 def lazy_dataset(stored: Store) -> xr.Dataset:
-    """Return the content of a folder as a dataset that is read when it is used.
-
-    With dask its variables are dask arrays, whose blocks lie along the chunks.
-    """
+    """Return the content of a folder as a dataset, of dask or not, that is read when it is used."""
     labels = stored.labels()
     grid, over = labels.grid, tuple(labels.grid.sizes)
     shapes, done = stored.contents()

@@ -1,11 +1,16 @@
 """From the arguments of a sweep to the study that they describe; reports all faults at once.
 
-Also which histories are kept.
+Also which histories are kept, and the memory that results need.
 """
 
+import math
+import os
 import re
 from collections.abc import Callable, Iterable, Mapping
+from contextlib import suppress
 from dataclasses import replace
+from functools import partial
+from pathlib import Path
 from typing import Any, Final, TypeVar, cast
 
 import numpy as np
@@ -20,8 +25,11 @@ from rockframe.errors import (
     warn,
 )
 from rockframe.motion import GroundMotion
+from rockframe.results.outcome import enumeration
 from rockframe.results.schema import GROUPS, SCHEMA
 from rockframe.results.variables import analyses, bodies, requests, runs
+from rockframe.results.variables.requests import FORCE_SCALARS, POINT_PEAKS, POINT_TIME, POINTS
+from rockframe.results.variables.runs import EVENTS_AND_SCALARS, HISTORIES
 from rockframe.results.variables.studies import MOTION, SWEEP
 from rockframe.results.variables.variable import EVENT, FLIP, TIME
 from rockframe.signals.arrays import AnyArray
@@ -34,12 +42,6 @@ from rockframe.simulation.plan import (
 )
 from rockframe.studies.sweeps.axes import MAX_CASES, OWNER, Axis, Changes, Grid, faults_of_values
 from rockframe.studies.sweeps.chunk import FIRST_LEVEL, REPEATED_LEVEL, SCREEN
-from rockframe.studies.sweeps.memory import (
-    LAZY_ADVICE,
-    check_memory,
-    memory_remedies,
-    numbers_per_case,
-)
 from rockframe.studies.sweeps.motions import (
     MOTION_OF_SCENE,
     NO_MOTION,
@@ -68,10 +70,9 @@ def kept_histories(
     if not arguments.histories:
         return None
     named = [str(name) for name in outputs_as_list(outputs)]
-    names = tuple(
-        dict.fromkeys(variable for name in named for variable in GROUPS.get(name, (name,)))
-    )
-    wrong = [name for name in names if SCHEMA[name].dims not in (TIME, requests.POINT_TIME)]
+    every = (variable for name in named for variable in GROUPS.get(name, (name,)))
+    names = tuple(dict.fromkeys(every))
+    wrong = [name for name in names if SCHEMA[name].dims not in (TIME, POINT_TIME)]
     if wrong:
         msg = f"outputs: {', '.join(wrong)} are no histories, which a sweep could keep"
         raise StudyError(msg)
@@ -102,9 +103,9 @@ _RESERVED_NAMES: Final = {
 } | {
     row.name
     for table in (
-        runs.HISTORIES, runs.ENERGY_HISTORIES, runs.EVENTS_AND_SCALARS, requests.ACCELERATIONS,
-        requests.REACTIONS, requests.OTHERS, requests.FORCE_SCALARS, requests.POINTS,
-        requests.POINT_PEAKS, requests.SLIPS, bodies.BODIES, bodies.RESTRAINERS,
+        HISTORIES, runs.ENERGY_HISTORIES, EVENTS_AND_SCALARS, requests.ACCELERATIONS,
+        requests.REACTIONS, requests.OTHERS, FORCE_SCALARS, POINTS,
+        POINT_PEAKS, requests.SLIPS, bodies.BODIES, bodies.RESTRAINERS,
         bodies.RESTRAINER_SCALARS, SWEEP,
     )
     for row in table
@@ -162,13 +163,12 @@ def plan_study(
     none: dict[str, GroundMotion | None] = {nothing: None}
     named = {**faults.attempt(lambda: motions_of_study(motions, swept) or none, none)}
     grid = _read_grid(swept, axes, cases, list(named), faults)
-    if isinstance(swept, SystemScene):
-        swept = swept.with_parts_of([*grid.columns, *grid.axes])
-    seconds = faults.attempt(lambda: _read_period(period, [*grid.columns, *grid.axes]), None)
+    every = [*grid.columns, *grid.axes]
+    swept = swept.with_parts_of(every) if isinstance(swept, SystemScene) else swept
+    seconds = faults.attempt(lambda: _read_period(period, every), None)
     if arguments is None or faults.found:
         raise StudyError(*faults.found)
-    screening_skipped = screened and not _is_screening_cheaper(swept, named.values())
-    if screening_skipped:
+    if screening_skipped := screened and not _is_screening_cheaper(swept, named.values()):
         screened, requested["accuracy"] = False, REPEATED_LEVEL
         arguments = read_arguments(faults.found, **requested)
     if not 0 < grid.count <= MAX_CASES:
@@ -180,11 +180,8 @@ def plan_study(
     if histories is not None and len({*map(default_output_step, named.values())}) > 1:
         arguments = replace(arguments, output_step=histories.step)  # at the times that are kept
     numbers = numbers_per_case(arguments, histories, screened=screened)
-    advice = (
-        LAZY_ADVICE
-        if stored
-        else memory_remedies(arguments, histories, may_be_kept=stored is False)
-    )
+    remedies = memory_remedies(arguments, histories, may_be_kept=stored is False)
+    advice = LAZY_ADVICE if stored else remedies
     too_large = check_memory(numbers, grid.count, advice, owner=OWNER)
     if stored and not faults.found:
         for text in too_large:
@@ -206,13 +203,9 @@ def _read_grid(
     of_case: AnyArray | None = None
     table = faults.attempt(lambda: _read_table(cases), {})
     if MOTION in table:
+        number_of = partial(motion_number, names=motions, owner="cases")
         column = np.asarray(table.pop(MOTION)).tolist()
-        of_case = faults.attempt(
-            lambda: np.array(
-                [motion_number(label, motions, owner="cases") for label in column], np.intp
-            ),
-            None,
-        )
+        of_case = faults.attempt(lambda: np.array([*map(number_of, column)], np.intp), None)
     rows = _read_axes(scene, table, faults, repeats=True)
     grid_axes = _read_axes(scene, axes, faults, repeats=False)
     faults.found += _duplicate_faults(rows, grid_axes)
@@ -226,14 +219,11 @@ def _read_grid(
 
 
 def _is_screening_cheaper(scene: SweptScene, motions: Iterable[GroundMotion | None]) -> bool:
-    """Say whether two runs by fixed steps cost less than one by tolerance, as far as is known.
-
-    On rigid ground there are no more steps by tolerance. Under pulses in closed form there are
-    few of either kind, so that a second run costs what surrounds the steps; those of several
-    bodies are dear enough.
-    """
+    """Say whether two runs by fixed steps cost less than one by tolerance, as far as is known."""
     if not isinstance(scene, SystemScene):
         return True
+    # on rigid ground there are no more steps by tolerance; under pulses in closed form there are
+    # few of either kind, and a second run costs what surrounds them, unless bodies are several
     setting = scene.assembly.setting
     sampled = any(motion is None or motion.recipe is None for motion in motions)
     return setting.steps_cost_most and (sampled or not isinstance(setting, SingleBodySetting))
@@ -269,16 +259,14 @@ def _read_axes(
     """Read axes, or columns; note what is wrong."""
     axes: list[Axis] = []
     for name, values in arguments.items():
-        fault = _name_fault(name)
-        if fault:
+        if (fault := _name_fault(name)) is not None:
             faults.found.append(fault)
             continue
-        axis = faults.attempt(lambda name=name, values=values: scene.axis(name, values), None)
-        if axis is None:
-            continue
-        axes.append(axis)
-        if not repeats or not len(axis.values):
-            faults.found += faults_of_values(name, axis.values)
+        axis = faults.attempt(partial(scene.axis, name, values), None)
+        if axis is not None:
+            axes.append(axis)
+            if not repeats or not len(axis.values):
+                faults.found += faults_of_values(name, axis.values)
     return axes
 
 
@@ -295,8 +283,7 @@ def _name_fault(name: object) -> str | None:
 
 def _duplicate_faults(rows: Iterable[Axis], axes: Iterable[Axis]) -> list[str]:
     """Tell what is both a column and an axis, and motions that are scaled in two ways."""
-    columns = [axis.name for axis in rows]
-    along = [axis.name for axis in axes]
+    columns, along = ([axis.name for axis in some] for some in (rows, axes))
     both = [name for name in along if name in columns]
     faults = [f"{name!r} is both an axis and a column of cases" for name in both]
     faults += [
@@ -312,16 +299,111 @@ def _duplicate_faults(rows: Iterable[Axis], axes: Iterable[Axis]) -> list[str]:
 
 
 def _read_period(value: QuantityLike | None, axes: Iterable[Axis]) -> float | None:
-    needed = any(
-        axis.changes is Changes.MOTION and axis.name == SPECTRAL_ACCELERATION for axis in axes
-    )
-    if needed != (value is not None):
-        msg = (
-            f"{SPECTRAL_ACCELERATION} needs the period of its oscillator, such as period='0.5 s'"
-            if needed
-            else f"period is that of {SPECTRAL_ACCELERATION}, which is no axis"
-        )
+    needed = (Changes.MOTION, SPECTRAL_ACCELERATION) in ((one.changes, one.name) for one in axes)
+    if value is None and needed:
+        msg = f"{SPECTRAL_ACCELERATION} needs the period of its oscillator, such as period='0.5 s'"
         raise StudyError(msg)
     if value is None:
         return None
+    if not needed:
+        msg = f"period is that of {SPECTRAL_ACCELERATION}, which is no axis"
+        raise StudyError(msg)
     return to_si(value, PERIOD, owner=OWNER, name="period", condition=POSITIVE)
+
+
+_FLOAT: Final = 8.0
+"""Size of a number [bytes]."""
+_COPY_FACTOR: Final = 2.5
+"""Copies of a number in memory at once: in its chunk, in all, and partly in axis order."""
+LAZY_ADVICE: Final = "they are read from the store as they are used (rf.open_study, lazy=True)"
+_WARNING_SHARE: Final = 0.5
+"""Share of the available memory above which the memory that a study needs is reported."""
+_MEMINFO: Final = Path("/proc/meminfo")
+_CGROUP_FILES: Final = tuple(
+    # limit, usage and its parts, of a container or a job: control groups of both versions
+    tuple(Path("/sys/fs/cgroup", name) for name in names)
+    for names in (
+        ("memory.max", "memory.current", "memory.stat"),
+        ("memory/memory.limit_in_bytes", "memory/memory.usage_in_bytes", "memory/memory.stat"),
+    )
+)
+
+
+def check_memory(
+    numbers: Mapping[str, float], cases: int, remedies: str, *, owner: str
+) -> list[str]:
+    """Say how much memory cases need, and whether it is available."""
+    sizes = {what: _FLOAT * _COPY_FACTOR * count * cases for what, count in numbers.items()}
+    needed, free = sum(sizes.values()), available_memory()
+    parts = ", ".join(f"{what} {_size_words(size)}" for what, size in sizes.items())
+    text = (
+        f"{cases} cases need about {_size_words(needed)} of memory ({parts}); {_size_words(free)} "
+        "are available"
+    )
+    if needed > free:
+        return [f"{text}; {remedies}"]
+    if needed > _WARNING_SHARE * free:
+        warn(f"{owner}: {text}", SolverWarning)
+    return []
+
+
+def available_memory() -> float:
+    """Return what this process may still use; infinite if unknown [bytes]."""
+    limits = [math.inf]
+    with suppress(OSError, ValueError, IndexError):
+        (line,) = (row for row in _MEMINFO.read_text().splitlines() if "MemAvailable" in row)
+        limits.append(1024.0 * float(line.split()[1]))
+    if len(limits) == 1 and hasattr(os, "sysconf"):
+        with suppress(OSError, ValueError):
+            limits.append(float(os.sysconf("SC_PHYS_PAGES")) * os.sysconf("SC_PAGE_SIZE"))
+    for most, usage, parts in _CGROUP_FILES:
+        with suppress(OSError, ValueError):  # "max" where there is no limit
+            used = float(usage.read_text()) - _reclaimable(parts)
+            limits.append(max(float(most.read_text()) - used, 0.0))
+    return min(limits)
+
+
+def _reclaimable(parts: Path) -> float:
+    """Return the memory with contents of files that were not used lately, which can be freed."""
+    with suppress(OSError, ValueError):
+        sizes = dict(line.split() for line in parts.read_text().splitlines())
+        return float(sizes.get("total_inactive_file", sizes.get("inactive_file", 0.0)))
+    return 0.0
+
+
+def _size_words(size: float) -> str:
+    """Write a size in a readable unit."""
+    for unit, large in (("TB", 1e12), ("GB", 1e9)):
+        if size >= large:
+            return f"{size / large:.3g} {unit}"
+    return f"{size / 1e6:.3g} MB"
+
+
+def numbers_per_case(
+    arguments: RunRequest, histories: Histories | None, *, screened: bool
+) -> dict[str, float]:
+    """Return how many numbers of each kind are kept for a case."""
+    points = len(arguments.points)
+    every = [*EVENTS_AND_SCALARS, *FORCE_SCALARS, *(SWEEP if screened else ())]
+    numbers = {"scalars": float(sum(not row.dims for row in every))}
+    if points:
+        numbers[f"peaks at {points} points"] = float(len(POINT_PEAKS) * points)
+    if histories is not None:
+        every = [row.name for row in (*HISTORIES, *POINTS) if TIME[0] in row.dims]
+        names = histories.names or every
+        several = sum(points if SCHEMA[name].dims == POINT_TIME else 1 for name in names)
+        what = f"{several} histories of {histories.count} times"
+        numbers[what] = float(several * histories.count)
+    return numbers
+
+
+def memory_remedies(
+    arguments: RunRequest, histories: Histories | None, *, may_be_kept: bool
+) -> str:
+    """Say what would need less memory."""
+    ways = ["run fewer cases"]
+    ways += ["give a store, from which they are read as they are used"] if may_be_kept else []
+    ways += ["name fewer points"] if arguments.points else []
+    if histories is not None:
+        ways += ["name fewer outputs", "give a longer output_step", "keep none: outputs=None"]
+    return enumeration(ways, "or")

@@ -66,8 +66,7 @@ class SystemScene:
     def axis(self, name: str, value: object) -> Axis:
         """Read an axis that names the motion's scale, an option, or a parameter of a part."""
         name = full_name(name)
-        of_run = _run_axis(name, value)
-        if of_run is not None:
+        if (of_run := _run_axis(name, value)) is not None:
             return of_run
         kind, _, parameter = name.rpartition(".")
         if parameter in _OPTIONS and kind in ("", _SYSTEM):
@@ -75,21 +74,14 @@ class SystemScene:
         matches = self._parts_with(parameter, kind, self.assembly.parts.components)
         matches = matches or self._parts_with(parameter, kind, self._parts())
         if len(matches) != 1:
-            raise StudyError(
-                self._ambiguity_fault(name, parameter, [part for _, part, _ in matches])
-            )
+            having = [part for _, part, _ in matches]
+            raise StudyError(self._ambiguity_fault(name, parameter, having))
         ((slot, part, declared),) = matches
-        if not declared.single:
-            msg = (
-                f"axis {name!r} is neither a number nor a word; give a function of the axes that "
-                "returns a System"
-            )
-            raise StudyError(msg)
-        if getattr(part, "members", ()):
-            msg = (
-                f"axis {name!r}: this {type(part).__name__} was built from its members; give a "
-                "function of the axes that returns a System"
-            )
+        fault = "" if declared.single else " is neither a number nor a word"
+        if not fault and getattr(part, "members", ()):
+            fault = f": this {type(part).__name__} was built from its members"
+        if fault:
+            msg = f"axis {name!r}{fault}; give a function of the axes that returns a System"
             raise StudyError(msg)
         values, unit = _declared_values(value, declared, name)
         _warn_of_unusual_values(declared, values, type(part).__name__)
@@ -107,9 +99,7 @@ class SystemScene:
                 faults.append(f"{seen[what]!r} and {axis.name!r} are the same parameter")
             seen[what] = axis.name
         for slot, part in self._parts().items():
-            values = {
-                parameter: name for (_, place, parameter), name in seen.items() if place == slot
-            }
+            values = {what: name for (_, place, what), name in seen.items() if place == slot}
             for alternative in part.alternatives:
                 ways = [name for way in alternative.ways for name in way if name in values]
                 heads = {way for way in alternative.ways if set(way) & set(values)}
@@ -171,10 +161,8 @@ class SystemScene:
         ]
 
     def _names_of(self, part: Component) -> list[str]:
-        """Return what axes may call a part: its class, and those that it is derived from.
-
-        A link first what results call it, in one word: "restrainer 1" is restrainer_1.
-        """
+        """Return what axes may call a part: its class, and those that it is derived from."""
+        # a link first what results call it, in one word: "restrainer 1" is restrainer_1
         link_names = [name for name, link in self.assembly.parts.named_links if link is part]
         kinds = [kind for kind in type(part).__mro__ if issubclass(kind, Component)]
         words = map(axis_name, link_names)
@@ -208,10 +196,8 @@ class SystemScene:
             return f"axis {name!r} is an argument of the runs, alike in all; axes are {listed}"
         for part in parts:
             if any(parameter in inner.varied() for inner in _inner_parts(part)):
-                return (
-                    f"axis {name!r} is a parameter of a part of the {type(part).__name__}; "
-                    + FUNCTION_ADVICE
-                )
+                kind = type(part).__name__
+                return f"axis {name!r} is a parameter of a part of the {kind}; {FUNCTION_ADVICE}"
         question = suggestion(parameter, [*known, *SWEEP_ARGUMENT_NAMES])
         return f"axis {name!r} names no parameter{question} There are {listed}"
 
@@ -237,8 +223,7 @@ class FunctionScene:
         argument = call_signature(self.function).parameters.get(name)
         if argument is None or argument.kind not in kinds:
             name = full_name(name)
-            of_run = _run_axis(name, value)
-            if of_run is not None:
+            if (of_run := _run_axis(name, value)) is not None:
                 return of_run
         values, unit = read_free_values(value, name)
         return Axis(name, values, unit, name.replace("_", " "), Changes.ARGUMENT, name)
@@ -383,8 +368,6 @@ def _warn_of_unusual_values(field: Declared[Any, Any, Any], values: AnyArray, ow
     """Warn of unusual values, as the part itself would."""
     if isinstance(field, Choice | Text) or type(field).caution is Declared.caution:
         return
-    for value in values.tolist():
-        words = field.caution(value)
-        if words is not None:
-            warn(f"{OWNER}: {owner}: {words}", ModelWarning)
-            return
+    words = next(filter(None, map(field.caution, values.tolist())), None)
+    if words is not None:
+        warn(f"{OWNER}: {owner}: {words}", ModelWarning)

@@ -153,7 +153,10 @@ class Store:
         with _writing_to(path):
             if not (path / _STUDY).exists():
                 _create(path, study, chunk)
-            _remove_stale_parts(path)
+            for part in (*path.glob(".*.part"), *path.glob(f"{_FOLDERS}.*.part")):
+                with suppress(OSError):
+                    if time.time() - part.stat().st_mtime > _STALE_AGE:
+                        part.unlink()
         head = _read_head(path)
         if head["rockframe_version"] != __version__:
             msg = (
@@ -213,18 +216,17 @@ class Store:
 
     def put(self, chunk: Chunk, rows: CaseResults) -> None:
         """Store the results of a chunk."""
-        arrays = {
-            **dict(zip(_CHUNK_ARRAYS, (rows.status, rows.message), strict=True)),
-            **{f"{_SCALAR}{name}": values for name, values in sorted(rows.scalars.items())},
-            **{f"{_HISTORY}{name}": values for name, values in sorted(rows.histories.items())},
-        }
+        arrays = dict(zip(_CHUNK_ARRAYS, (rows.status, rows.message), strict=True))
+        for kind, columns in ((_SCALAR, rows.scalars), (_HISTORY, rows.histories)):
+            arrays |= {f"{kind}{name}": values for name, values in sorted(columns.items())}
+        file = self._file(chunk)
         try:
-            self._file(chunk).parent.mkdir(exist_ok=True)
-            write_arrays(self._file(chunk), self._described(chunk) | {"texts": rows.texts}, arrays)
+            file.parent.mkdir(exist_ok=True)
+            write_arrays(file, self._described(chunk) | {"texts": rows.texts}, arrays)
         except OSError as problem:
             msg = (
-                f"{self._file(chunk)} cannot be written: {problem}; all chunks before it are "
-                "stored, and the same call continues from there"
+                f"{file} cannot be written: {problem}; all chunks before it are stored, and the "
+                "same call continues from there"
             )
             raise StudyError(msg) from problem
 
@@ -252,11 +254,7 @@ class Store:
             raise StudyError(msg)
         status, message = (arrays.pop(name) for name in _CHUNK_ARRAYS)
         scalars, histories = (
-            {
-                name.removeprefix(kind): values
-                for name, values in arrays.items()
-                if name.startswith(kind)
-            }
+            {n.removeprefix(kind): values for n, values in arrays.items() if n.startswith(kind)}
             for kind in (_SCALAR, _HISTORY)
         )
         return CaseResults(status, scalars, histories, message, tuple(texts))
@@ -290,11 +288,10 @@ class Store:
         )
         names = tuple(name for name, _ in described["motions"])
         grid = Grid(axes, columns, len(names), arrays.get(_COLUMN))
-        of_histories = described["histories"]
         histories = None
-        if of_histories is not None:
-            which = None if of_histories["names"] is None else tuple(of_histories["names"])
-            histories = Histories(which, of_histories["step"], of_histories["count"])
+        if (kept := described["histories"]) is not None:
+            which = None if kept["names"] is None else tuple(kept["names"])
+            histories = Histories(which, kept["step"], kept["count"])
         points = tuple(BodyPoint(**point) for point in described["points"])
         return SweepLabels(grid, names, histories, points, described["attributes"])
 
@@ -378,10 +375,8 @@ def _word_values(axis: Axis) -> list[str] | None:
 
 
 def _sampled_components(description: Mapping[str, Any] | None) -> dict[str, dict[str, Any]]:
-    """Return the components that a motion is described by, where it is described by samples.
-
-    What a constructor makes is described by its arguments, and ``vertical`` may be one of them.
-    """
+    """Return the components that a motion is described by, where it is described by samples."""
+    # what a constructor makes is described by its arguments, and ``vertical`` may be one of them
     if description is None or description["constructor"] is not None:
         return {}
     return {component: description[component] for component in _SAMPLED if description[component]}
@@ -403,9 +398,8 @@ def _read_head(path: Path) -> dict[str, Any]:
         msg = f"{file}: damaged: {problem}"
         raise StudyError(msg) from problem
     if form not in (FORMAT, FOLDER_FORMAT):
-        why = "which this version cannot read"
-        if form in _OBSOLETE_FORMATS:
-            why = "which does not tell for certain whose results it holds"
+        uncertain = "which does not tell for certain whose results it holds"
+        why = uncertain if form in _OBSOLETE_FORMATS else "which this version cannot read"
         msg = (
             f"{path}: found a study of rockframe {version} (format {form}), {why}; this is "
             f"rockframe {__version__} (formats {FORMAT} and {FOLDER_FORMAT}): run the study again, "
@@ -416,13 +410,6 @@ def _read_head(path: Path) -> dict[str, Any]:
         msg = f"{file}: damaged: entries are missing"
         raise StudyError(msg)
     return head
-
-
-def _remove_stale_parts(path: Path) -> None:
-    for part in (*path.glob(".*.part"), *path.glob(f"{_FOLDERS}.*.part")):
-        with suppress(OSError):
-            if time.time() - part.stat().st_mtime > _STALE_AGE:
-                part.unlink()
 
 
 def staggered(chunks: list[Chunk]) -> list[Chunk]:

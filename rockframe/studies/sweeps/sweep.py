@@ -21,7 +21,6 @@ from rockframe.simulation.system import System
 from rockframe.solve.accuracy import AccuracyLevel
 from rockframe.studies.sweeps.arguments import SweepArguments
 from rockframe.studies.sweeps.axes import OWNER, Chunk, chunks_of
-from rockframe.studies.sweeps.cases_of_job import CasesOfJob
 from rockframe.studies.sweeps.chunk import CaseResults
 from rockframe.studies.sweeps.claims import Claims
 from rockframe.studies.sweeps.execution import (
@@ -31,13 +30,18 @@ from rockframe.studies.sweeps.execution import (
     workers_of_executor,
 )
 from rockframe.studies.sweeps.known_cases import KnownCases
-from rockframe.studies.sweeps.labelling import sweep_dataset, sweep_labels
+from rockframe.studies.sweeps.labelling import (
+    cases_verdict,
+    mark_not_screened,
+    sweep_dataset,
+    sweep_labels,
+    warn_of_missing_results,
+)
 from rockframe.studies.sweeps.lazy_dataset import lazy_dataset
 from rockframe.studies.sweeps.motions import MotionsLike
 from rockframe.studies.sweeps.planning import plan_study
 from rockframe.studies.sweeps.store import Store, staggered
-from rockframe.studies.sweeps.study import Study, cache_study
-from rockframe.studies.sweeps.words import cases_verdict, mark_not_screened, warn_of_missing_results
+from rockframe.studies.sweeps.study import CasesOfJob, Study, SweepJob, cache_study
 from rockframe.suggestions import with_hints
 from rockframe.system.options import Overturning, OverturningLike, PointsLike, SweepAccuracyLike
 from rockframe.system.own_base import OwnBase
@@ -249,10 +253,7 @@ def run_study(
     chunk: int | None = None,
     known: Sequence[str | PathLike[str]] = (),
 ) -> tuple[xr.Dataset, bool]:
-    """Run the cases of a study that are not kept yet, and label all of them.
-
-    Also return whether it was completed. An interrupt may come when all cases have been run.
-    """
+    """Run the cases of a study that are not kept yet; return the dataset, and whether all ran."""
     workers = workers_of_executor(executor)
     as_python = not COMPILED
     if chunk is None:
@@ -267,9 +268,8 @@ def run_study(
     if store is None:
         dataset, unfinished = _run_in_memory(study, size, executor, bar)
     else:
-        dataset, unfinished = _run_with_store(
-            study, read_folder(store), size, executor, bar, known_cases
-        )
+        stored = Store.open_or_create(read_folder(store), study, size)
+        dataset, unfinished = _run_with_store(study, stored, executor, bar, known_cases)
     if unfinished:
         warn(f"{OWNER}: interrupted; {unfinished}", SolverWarning)
     if not study.lazy:
@@ -283,12 +283,12 @@ def _warn_of_long_study(study: Study, workers: int, *, as_python: bool, stored: 
     """Warn of sweeps that take more than a day."""
     days = study.grid.count * study.time_of_case(as_python=as_python) / workers / _DAY
     if days > 1.0:
-        ways = (
-            "several jobs on it share the work" if stored else "with one a kill would not lose it"
-        )
+        advice = "there is no store: with one a kill would not lose it"
+        if stored:
+            advice = "the store: several jobs on it share the work"
         warn(
             f"{OWNER}: {study.grid.count} cases take about {days:.2g} days with {workers} workers, "
-            f"by the lengths of the motions; {'the' if stored else 'there is no'} store: {ways}",
+            f"by the lengths of the motions; {advice}",
             SolverWarning,
         )
 
@@ -321,22 +321,19 @@ def _run_in_memory(
 
     chunks = chunks_of(study.grid.count, size)
     completed = run_chunks(chunks, lambda chunk: study.job(chunk.cases), collect, executor)
-    dataset = sweep_dataset(
-        sweep_labels(study), sorted(results, key=lambda result: result[0].start)
-    )
+    results.sort(key=lambda result: result[0].start)
+    dataset = sweep_dataset(sweep_labels(study), results)
     return dataset, "" if completed else cases_verdict(dataset)
 
 
 def _run_with_store(
     study: Study,
-    folder: Path,
-    size: int,
+    stored: Store,
     executor: Executor | None,
     bar: ProgressBar,
     known_cases: KnownCases,
 ) -> tuple[xr.Dataset, str]:
     """Return the results, and of an interrupted study how far it came."""
-    stored = Store.open_or_create(folder, study, size)
     every = stored.chunks()
     missing = [chunk for chunk in every if not stored.has(chunk)]
     some = len(missing) < len(every)
@@ -348,24 +345,20 @@ def _run_with_store(
     done = study.grid.count - sum(len(chunk.cases) for chunk in missing)
     bar.expect(study.grid.count, done)
 
-    claims = Claims(folder)
+    claims = Claims(stored.folder)
 
     def collect(chunk: Chunk, rows: CaseResults) -> None:
         stored.put(chunk, known_cases.merge(chunk, rows))
         claims.release(chunk.number)
         bar.update(len(chunk.cases))
 
-    claimed = _claimed_chunks(
-        staggered(missing) if some else missing, stored, known_cases, claims, bar
-    )
+    def job_of(chunk: Chunk) -> SweepJob:
+        return study.job(known_cases.missing_cases(chunk))
+
+    missing = staggered(missing) if some else missing
+    claimed = _claimed_chunks(missing, stored, known_cases, claims, bar)
     try:
-        completed = run_chunks(
-            claimed,
-            lambda chunk: study.job(known_cases.missing_cases(chunk)),
-            collect,
-            executor,
-            claims.renew,
-        )
+        completed = run_chunks(claimed, job_of, collect, executor, claims.renew)
     finally:
         claims.release_all()
     if completed:
@@ -380,10 +373,7 @@ def _run_with_store(
 def _claimed_chunks(
     missing: list[Chunk], stored: Store, known_cases: KnownCases, claims: Claims, bar: ProgressBar
 ) -> Iterator[Chunk | None]:
-    """Return the chunks that no other job has, as they are claimed; None while others have them.
-
-    Chunks that are fully known from other studies are stored here, and not returned.
-    """
+    """Return the chunks that no other job has, as they are claimed; None while others have them."""
     checked = -math.inf
     while missing:
         if time.monotonic() - checked < _CHECK_INTERVAL:
@@ -392,6 +382,7 @@ def _claimed_chunks(
         checked, later = time.monotonic(), list[Chunk]()
         for chunk in missing:
             if not stored.has(chunk) and not len(known_cases.missing_cases(chunk)):
+                # it is fully known from other studies
                 stored.put(chunk, known_cases.merge(chunk, None))
             claimed = not stored.has(chunk) and claims.take(chunk.number)
             if stored.has(chunk):  # another job has run it, maybe a moment ago

@@ -6,7 +6,7 @@ from scipy import stats
 
 from rockframe.identification.fitting import Solution, fit_peaks, uncertainty_of
 from rockframe.identification.measured import MeasuredPeaks
-from rockframe.identification.unknowns import Unknown
+from rockframe.identification.prediction import Unknown
 
 
 @pytest.mark.parametrize(("count", "size"), [(4, 2), (6, 3), (30, 2)])

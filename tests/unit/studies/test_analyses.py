@@ -15,7 +15,7 @@ from unit.studies.small_analyses import (
 )
 
 import rockframe as rf
-from rockframe.errors import ComponentError, SchemaError, StudyError
+from rockframe.errors import ComponentError, SchemaError, SolverWarning, StudyError
 from rockframe.studies.probability import rank_parameters
 
 
@@ -306,6 +306,18 @@ def test_earthquake_sequence_equals_continued_runs(tmp_path):
         response = system.simulate(motion, free_vibration="0.5 s", initial=response)
         peaks.append(max(peaks[-1], response.peak_rotation.item()))
     assert found.peak_rotation.sel(sequence="first").values == pytest.approx(peaks, rel=1e-4)
+
+
+def test_sequence_without_a_verdict_does_not_count_as_standing():
+    weak = motions()["seed 1"].scaled(0.1)
+    steps = len(weak.acceleration) * 3 // 2  # enough for the first earthquake alone
+    options = {"pause": "0.5 s", "accuracy": rf.Accuracy(substeps=1, max_steps=steps), **QUIET}
+    sequences = {"both": [weak, weak], "one": [weak]}
+    with pytest.warns(SolverWarning, match="1 of 3 cases have no result"):
+        found = rf.earthquake_sequences(SYSTEM, sequences, **options)
+    assert np.isnan(found.overturning_earthquake.sel(sequence="both"))
+    assert found.overturning_earthquake.sel(sequence="one") == 0
+    assert found.verdict == "Of all 2 sequences 0 overturned; 1 has no verdict."
 
 
 @pytest.mark.parametrize("step", ["0.02 s", "0.004 s", "0.0125 s"])

@@ -12,7 +12,7 @@ from stored_sweep import as_bytes
 import rockframe as rf
 from rockframe.errors import ComponentError, SolverWarning, StudyError
 from rockframe.results.variables.runs import RunStatus
-from rockframe.studies.sweeps import lazy_dataset, memory, sweep, words
+from rockframe.studies.sweeps import labelling, lazy_dataset, planning, sweep
 from rockframe.studies.sweeps.store import Store, read_shapes
 
 pytestmark = pytest.mark.filterwarnings("ignore::rockframe.errors.ModelWarning")
@@ -90,8 +90,8 @@ def assert_equal_lazily(lazy, in_memory):
 @pytest.mark.parametrize("run", STUDIES)
 def test_lazily_opened_study_equals_the_stored_one(run, tmp_path, has_dask, monkeypatch):
     monkeypatch.setattr(lazy_dataset, "_BLOCK_SIZE", 1)
-    counted, counts = [], words._counts
-    monkeypatch.setattr(words, "_counts", lambda *a: counted.append(a[0].sizes) or counts(*a))
+    counted, counts = [], labelling._counts
+    monkeypatch.setattr(labelling, "_counts", lambda *a: counted.append(a[0].sizes) or counts(*a))
     in_memory = run(accuracy="fast", store=tmp_path / "study")
     lazy = rf.open_study(tmp_path / "study", lazy=True)
     assert (lazy.chunks != {}) == has_dask
@@ -217,7 +217,7 @@ def test_lazy_blocks_follow_the_execution_order(tmp_path):
 def test_study_larger_than_memory_is_read_from_its_store(tmp_path, monkeypatch):
     scales = np.linspace(0.1, 1, 100)
     in_memory = rf.sweep(SYSTEM, MOTIONS["weak"], scale=scales, free_vibration="5 s")
-    monkeypatch.setattr(memory, "available_memory", lambda: 2e4)
+    monkeypatch.setattr(planning, "available_memory", lambda: 2e4)
     message = r"100 cases need about 0.058 MB of memory .* 0.02 MB are available; "
     with pytest.raises(StudyError, match=f"{message}run fewer cases or give a store, from which"):
         rf.sweep(SYSTEM, MOTIONS["weak"], scale=scales, free_vibration="5 s")
@@ -236,7 +236,7 @@ def test_study_larger_than_memory_is_read_from_its_store(tmp_path, monkeypatch):
 
 
 def test_an_interrupted_study_that_does_not_fit_is_not_read(tmp_path, monkeypatch):
-    monkeypatch.setattr(memory, "available_memory", lambda: 2e4)
+    monkeypatch.setattr(planning, "available_memory", lambda: 2e4)
     monkeypatch.setattr(Store, "get", lambda *_: pytest.fail("it has been read"))
     stopped = Interrupting(2)
     with pytest.warns(SolverWarning) as caught:

@@ -120,6 +120,9 @@ def test_covariates_are_accepted_in_several_forms(runs):
     ]  # fmt: skip
     every = [rf.compare_intensities(runs, ["poor"], against=one) for one in forms]
     assert len({one.sufficiency_p_value.item() for one in every}) == 1
+    backwards = runs.isel(motion=slice(None, None, -1))
+    found = rf.compare_intensities(backwards, ["poor"], against=forms[-1]).sufficiency_p_value
+    assert found.item() == pytest.approx(every[0].sufficiency_p_value.item(), rel=1e-12)
     holes = np.where(np.arange(COUNT) < 5, np.nan, values)
     assert np.isfinite(
         rf.compare_intensities(runs, ["poor"], against={"m": holes}).sufficiency_p_value
@@ -150,6 +153,16 @@ def test_spectral_measures_are_labelled_with_their_periods(runs):
         ({"measures": ["good"], "against": ["depth"]}, "which is no coordinate"),
         ({"measures": ["good"], "against": {"depth": [1, 2]}}, "2 numbers of depth for 60 motions"),
         ({"measures": ["good"], "against": {"depth": {"m00": 1}}}, "no depth of the motion 'm01'"),
+        ({"measures": ["good"], "against": ["motion"]}, "'motion' has no numbers"),
+        ({"measures": ["good"], "against": {"soil": ["rock"] * COUNT}}, "'soil' has no numbers"),
+        (
+            {"measures": ["good"], "against": {"depth": xr.DataArray(np.ones(COUNT), dims="x")}},
+            "needs a name and dimensions among motion, got 'depth' over .'x',.",
+        ),
+        (
+            {"measures": ["good"], "against": {"depth": xr.DataArray([1.0, 2.0], dims="motion")}},
+            "'depth' has 2 values along 'motion', of which the runs have 60",
+        ),
     ],
 )
 def test_invalid_comparison_arguments_are_refused(runs, options, words):

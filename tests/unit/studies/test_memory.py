@@ -7,7 +7,7 @@ import pytest
 
 import rockframe as rf
 from rockframe.errors import SolverWarning, StudyError
-from rockframe.studies.sweeps import memory
+from rockframe.studies.sweeps import planning
 
 SYSTEM = rf.System(rf.Block(width="0.5 m", height="2 m", mass="400 kg"))
 PULSE = rf.GroundMotion.sine_pulse("3 m/s^2", "1 Hz")
@@ -34,13 +34,13 @@ MANY = 30_000
     ],
 )  # fmt: skip
 def test_study_larger_than_memory_is_refused_before_running(study, monkeypatch):
-    monkeypatch.setattr(memory, "available_memory", lambda: 2e6)
+    monkeypatch.setattr(planning, "available_memory", lambda: 2e6)
     with pytest.raises(StudyError, match=r"cases need about .* [GM]B of memory .*; 2 MB are ava"):
         study()
 
 
 def test_study_using_most_of_memory_warns(monkeypatch):
-    monkeypatch.setattr(memory, "available_memory", lambda: 7e4)
+    monkeypatch.setattr(planning, "available_memory", lambda: 7e4)
     with pytest.warns(SolverWarning, match=r"sweep: 100 cases need about 0.058 MB of memory"):
         runs = rf.sweep(SYSTEM, PULSE, scale=np.linspace(0.1, 1, 100), free_vibration="5 s")
     assert runs.overturned.notnull().all()
@@ -49,9 +49,9 @@ def test_study_using_most_of_memory_warns(monkeypatch):
 def test_estimated_memory_matches_measured_memory(monkeypatch):
     motions = [PULSE, PULSE.scaled(1.1)]
     sizes = []  # of scalars, of histories, of both, and available
-    monkeypatch.setattr(memory, "available_memory", lambda: 1e12)
-    shown = memory._size_words
-    monkeypatch.setattr(memory, "_size_words", lambda size: sizes.append(size) or shown(size))
+    monkeypatch.setattr(planning, "available_memory", lambda: 1e12)
+    shown = planning._size_words
+    monkeypatch.setattr(planning, "_size_words", lambda size: sizes.append(size) or shown(size))
     arguments = {
         "scale": np.linspace(0.1, 0.2, 40), "outputs": ["rotation", "base_shear"],
         "output_step": "1 ms", "duration": "5 s", "progress": False,
@@ -70,19 +70,19 @@ def test_estimated_memory_matches_measured_memory(monkeypatch):
 
 def test_available_memory_is_the_smallest_limit(monkeypatch, tmp_path):
     machine, most, now, parts = (tmp_path / name for name in ("meminfo", "max", "current", "stat"))
-    monkeypatch.setattr(memory, "_MEMINFO", machine)
-    monkeypatch.setattr(memory, "_CGROUP_FILES", ((most, now, parts),))
-    assert memory.available_memory() > 1e7  # of the machine, or infinite
+    monkeypatch.setattr(planning, "_MEMINFO", machine)
+    monkeypatch.setattr(planning, "_CGROUP_FILES", ((most, now, parts),))
+    assert planning.available_memory() > 1e7  # of the machine, or infinite
     machine.write_text("MemTotal: 9 kB\nMemAvailable:   4000 kB\n")
-    assert memory.available_memory() == 4096e3
+    assert planning.available_memory() == 4096e3
     most.write_text("max\n")
     now.write_text("1000000\n")
-    assert memory.available_memory() == 4096e3
+    assert planning.available_memory() == 4096e3
     most.write_text("3000000\n")
-    assert memory.available_memory() == 2e6
+    assert planning.available_memory() == 2e6
     most.write_text("900000\n")
-    assert memory.available_memory() == 0.0
+    assert planning.available_memory() == 0.0
     parts.write_text("file 800000\ninactive_file 600000\n")  # contents of files can be dropped
-    assert memory.available_memory() == 5e5
+    assert planning.available_memory() == 5e5
     parts.write_text("inactive_file 0\ntotal_inactive_file 700000\n")
-    assert memory.available_memory() == 6e5
+    assert planning.available_memory() == 6e5

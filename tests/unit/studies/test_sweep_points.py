@@ -8,7 +8,7 @@ import xarray as xr
 
 import rockframe as rf
 from rockframe.errors import AssemblyError, SolverWarning, StudyError
-from rockframe.studies.sweeps import memory
+from rockframe.studies.sweeps import planning
 
 BLOCK = rf.Block(width="0.8 m", height="3.6 m", mass="4 t")
 ON_PADS = rf.System(BLOCK, rf.TwoSpringSupport(frequency_ratio=20, damping_ratio=0.1))
@@ -158,7 +158,7 @@ def test_invalid_points_are_refused():
 
 
 def test_more_values_than_memory_has_are_refused(monkeypatch):
-    monkeypatch.setattr(memory, "available_memory", lambda: 4e5)
+    monkeypatch.setattr(planning, "available_memory", lambda: 4e5)
     arguments = {"scale": SCALES, "points": POINTS, "free_vibration": "1 s"}
     names = ["point_vertical_acceleration", "rotation"]
     with pytest.raises(
@@ -166,6 +166,6 @@ def test_more_values_than_memory_has_are_refused(monkeypatch):
     ):
         rf.sweep(ON_PADS, PULSE, **arguments, outputs=names, output_step="0.5 ms")
     rf.sweep(ON_PADS, PULSE, **arguments, outputs=["rotation"])
-    monkeypatch.setattr(memory, "available_memory", lambda: 1e3)
+    monkeypatch.setattr(planning, "available_memory", lambda: 1e3)
     with pytest.raises(StudyError, match=r"3 cases need .*peaks at 3 points .*name fewer points"):
         rf.sweep(ON_PADS, PULSE, **arguments)

@@ -7,7 +7,7 @@ from stored_sweep import assert_identical
 
 import rockframe as rf
 from rockframe.errors import ModelWarning
-from rockframe.studies.sweeps.words import (
+from rockframe.studies.sweeps.labelling import (
     MAX_SIMILAR_TEXTS,
     merge_similar_texts,
     warn_of_missing_results,
