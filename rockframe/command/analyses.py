@@ -41,6 +41,7 @@ from rockframe.command.shared import (
     with_project,
 )
 from rockframe.command.streams import print_message
+from rockframe.command.typed_calls import parse_value
 from rockframe.errors import ComponentError, FileError, StudyError
 from rockframe.motion import GroundMotion
 from rockframe.motion.description import CONSTRUCTORS
@@ -185,12 +186,12 @@ def _read_limit_state(word: str) -> object:
             msg = f"--limits: expected a number, a name or NAME=VALUE, got {word!r}"
             raise ComponentError(msg) from None
     name, equals, value = word.partition("=")
-    if not equals and name in SCHEMA:
+    if equals:
+        return name.strip(), parse_value(value.strip())
+    if name in SCHEMA:
         msg = f"--limits: {name} needs a limit, as in 'peak_slip=5 cm'"
         raise ComponentError(msg)
-    if not equals:
-        return word
-    return name.strip(), float(value) if re.fullmatch(r"[\d.]+", value.strip()) else value.strip()
+    return word
 
 
 _IDA_KIND: Final = analysis_kind("the result of a dynamic analysis", "capacity_scale", "flip_count")
@@ -340,13 +341,13 @@ def _pulse(scene: SceneDescription, name: str | None) -> tuple[Any, str]:
     motion = scene.motion
     described = {} if motion is None else motion.to_dict()
     if name is None and set(_MAP_AXES) <= set(described):
-        values = {
-            key: value
+        words = [str(described["constructor"]).replace("_", " ")]
+        words += [
+            f"{key}: {value:g}" if isinstance(value, int | float) else f"{key}: {value}"
             for key, value in described.items()
             if key not in (*_MAP_AXES, *_CONSTRUCTOR_KEYS)
-        }
-        words = str(described["constructor"]).replace("_", " ")
-        return motion, ", ".join([words, *(f"{key}: {value:g}" for key, value in values.items())])
+        ]
+        return motion, ", ".join(words)
     name = name or _DEFAULT_PULSE
     return getattr(GroundMotion, name), name.replace("_", " ")
 

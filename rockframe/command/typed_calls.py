@@ -66,7 +66,7 @@ def parse_call(
         message = message or f"needs {missing[0]}=..."
         msg = f"{option}: {name} {message}; it takes {', '.join(known)}"
         raise ComponentError(msg)
-    return function, {key: _parse_value(text) for key, text in value.items()}
+    return function, {key: parse_value(text) for key, text in value.items()}
 
 
 def parse_check(text: str, option: str) -> list[str]:
@@ -106,7 +106,7 @@ def _read_spectrum(path: str) -> tuple[tuple[Any, str], tuple[Any, str]]:
     return columns["period"], columns["acceleration"]
 
 
-def _parse_value(text: str) -> float | str:
+def parse_value(text: str) -> float | str:
     """Read a pure number; a quantity with a unit, or a word, remains text."""
     try:
         return float(text)
