@@ -1,6 +1,6 @@
 """Empirical distributions, sensitivities of overturning, and fragilities."""
 
-from typing import Final
+from typing import Any, Final
 
 import numpy as np
 import xarray as xr
@@ -104,15 +104,16 @@ def probability(
     first = data[str(data["parameter"].to_numpy()[0])]
     verdict = overturns(data).to_numpy()
     decided = ~np.isnan(verdict)
+    values, verdict = first.to_numpy()[decided], verdict[decided]
     if first.dtype.kind == "f":
-        cuts = np.quantile(first.to_numpy()[decided], np.linspace(0.0, 1.0, 13))
-        place = np.clip(np.searchsorted(cuts, first.to_numpy()[decided], side="right") - 1, 0, 11)
-        shares = [verdict[decided][place == k].mean() for k in range(12)]
-        right.stairs(shares, cuts, fill=True, color=COLOURS[1], alpha=0.6)
+        groups = min(_MAX_GROUPS, values.size)
+        cuts = np.quantile(values, np.linspace(0.0, 1.0, groups + 1))
+        place = np.clip(np.searchsorted(cuts, values, side="right") - 1, 0, groups - 1)
+        right.stairs(_shares(verdict, place, groups), cuts, fill=True, color=COLOURS[1], alpha=0.6)
         right.set(xlabel=variable_label(first))
     else:
-        labels, place = np.unique(first.to_numpy()[decided].astype(str), return_inverse=True)
-        shares = [verdict[decided][place == k].mean() for k in range(len(labels))]
+        labels, place = np.unique(values.astype(str), return_inverse=True)
+        shares = _shares(verdict, place, len(labels))
         right.bar(range(len(labels)), shares, color=COLOURS[1], alpha=0.6)
         right.set(xlabel="motion")
         if len(labels) <= _MAX_NAMED:
@@ -124,6 +125,13 @@ def probability(
     sentence = figure_units(units, "probability").reader.convert_text(cases_verdict(dataset))
     sheet.set_title(sentence, title)
     return sheet.panels
+
+
+def _shares(verdicts: Any, groups: Any, count: int) -> Any:
+    """Return the shares that overturned in groups, NaN in one that equal values leave empty."""
+    sizes = np.bincount(groups, minlength=count)
+    overturned = np.bincount(groups, weights=verdicts, minlength=count)
+    return np.divide(overturned, sizes, out=np.full(count, np.nan), where=sizes > 0)
 
 
 @draws(
@@ -191,6 +199,8 @@ def subset_simulation(
     return axes
 
 
+_MAX_GROUPS: Final = 12
+"""Groups of cases by the value of a parameter."""
 _MAX_NAMED: Final = 30
 """Motions whose names stand below their bars."""
 _PROBABILITY: Final = "exceedance_probability"

@@ -30,7 +30,7 @@ from rockframe.plot._axes import (
 from rockframe.plot._checks import draws, figure_data
 from rockframe.plot._motion import LabelledMotion, MotionsLike, labelled_motions, motions_title
 from rockframe.plot._panels import Axes, AxesLike, Panels, make_sheet, make_single_panel
-from rockframe.plot._runs import Window, read_window
+from rockframe.plot._runs import Window, read_window, within_window
 from rockframe.suites import TargetSpectrum
 from rockframe.suites.target import check_target
 from rockframe.units import ACCELERATION, VELOCITY, QuantityLike, RatioLike
@@ -93,31 +93,48 @@ def spectra(
     amplitude = axis_units.axis_unit(VELOCITY)
     results = [
         (
-            curve,
-            velocity_and_displacement(curve.motion, component=component),
+            within_window(
+                velocity_and_displacement(curve.motion, component=component),
+                limits, "spectra", "motion",
+            ),
             response_spectrum(curve.motion, periods, damping_ratios, component=component),
             fourier_spectrum(curve.motion, resolution=_RESOLUTION, component=component),
         )
         for curve in data
-    ]
+    ]  # fmt: skip
     sheet = make_sheet(
         ax, "spectra", _PANELS, (7.2, 5.4),
         mosaic=[["history", "history"], ["response", "fourier"]], height_ratios=[1.0, 1.7],
     )  # fmt: skip
-    for curve, history, response, fourier in results:
-        name = f"{_VARIABLE_PREFIX[str(component)]}ground_acceleration"
+    history, response, fourier = sheet.panels
+    highest = 0.0
+    for curve, (part, spectrum, transform) in zip(data, results, strict=True):
         colour = text_colour() if curve.label is None else curve.colour
-        part = history.sel(time=slice(*limits))
-        values = unit.of(part[name])
-        sheet.axes.plot(part["time"], values, color=colour, linewidth=0.8, label=curve.label)
-        zero_line(sheet.axes)
-        _draw_response_spectra(sheet.panels[1], response, unit, curve)
-        positive = fourier.isel(frequency=slice(1, None))
-        values = amplitude.of(positive["fourier_amplitude"])
-        sheet.panels[2].semilogx(positive["frequency"], values, color=colour, linewidth=0.7)
-    _label_axes(sheet.panels, results, unit, amplitude)
+        values = unit.of(part[f"{_VARIABLE_PREFIX[str(component)]}ground_acceleration"])
+        history.plot(part["time"], values, color=colour, linewidth=0.8, label=curve.label)
+        zero_line(history)
+        _draw_response_spectra(response, spectrum, unit, curve)
+        values = amplitude.of(transform["fourier_amplitude"])
+        highest = max(highest, float(values.max()))
+        fourier.semilogx(transform["frequency"][1:], values[1:], color=colour, linewidth=0.7)
+    history.set_xlim(
+        min(float(part["time"][0]) for part, _, _ in results),
+        max(float(part["time"][-1]) for part, _, _ in results),
+    )
+    history.set(xlabel="time [s]", ylabel=axis_label("acceleration\n", unit.words))
+    response.set(xlabel="period [s]", ylabel=axis_label("pseudo-spectral acceleration", unit.words))
+    response.set_ylim(bottom=0.0)
+    if len(data) == 1:
+        add_legend(response, title="damping", title_fontsize="small")
+    if highest > 0.0:
+        fourier.set_yscale("log")
+        fourier.set_ylim(1e-4 * highest, 2.0 * highest)
+    fourier.set(xlabel="frequency [Hz]", ylabel=axis_label("Fourier amplitude", amplitude.words))
+    for axes in (response, fourier):
+        label_log_ticks(axes, "x")
+        grid(axes)
     if len(data) > 1:
-        sheet.add_legend(*sheet.panels[1].get_legend_handles_labels(), fontsize="small")
+        sheet.add_legend(*response.get_legend_handles_labels(), fontsize="small")
     sheet.set_title(motions_title(data), title)
     return sheet.panels
 
@@ -137,31 +154,6 @@ def _draw_response_spectra(
         axes.semilogx(
             drawn["period"], values, color=colour, ls=line_style(place), lw=1.2, label=label
         )
-
-
-def _label_axes(
-    panels: Panels, results: list[Any], unit: DisplayUnit, amplitude: DisplayUnit
-) -> None:
-    history, response, fourier = panels
-    several = len(results) > 1
-    times = [result[1]["time"].to_numpy() for result in results]
-    drawn_times = [line.get_xdata() for line in history.get_lines() if len(line.get_xdata()) > 2]
-    ends = drawn_times or times
-    history.set_xlim(min(time[0] for time in ends), max(time[-1] for time in ends))
-    history.set(xlabel="time [s]", ylabel=axis_label("acceleration\n", unit.words))
-    response.set(xlabel="period [s]", ylabel=axis_label("pseudo-spectral acceleration", unit.words))
-    response.set_ylim(bottom=0.0)
-    if not several:
-        add_legend(response, title="damping", title_fontsize="small")
-    highest = max(float(amplitude.of(result[3]["fourier_amplitude"]).max()) for result in results)
-    if highest > 0.0:
-        fourier.set_yscale("log")
-        fourier.set_ylim(1e-4 * highest, 2.0 * highest)
-    fourier.set(xlabel="frequency [Hz]", ylabel=axis_label("Fourier amplitude", amplitude.words))
-    label_log_ticks(response, "x")
-    label_log_ticks(fourier, "x")
-    grid(response)
-    grid(fourier)
 
 
 class Average(StrEnum):

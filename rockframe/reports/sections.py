@@ -170,7 +170,7 @@ def response_section(dataset: xr.Dataset, units: DisplayUnits) -> Iterator[str]:
     }:
         angle = units.chosen.get(Unit.RADIAN)
         yield page.captioned_figure(
-            plot.response(dataset, rotation="deg" if angle else "relative", units=units.words),
+            plot.response(dataset, rotation=None if angle else "relative", units=units.words),
             "From the top: ground acceleration; rotation"
             f"{'' if angle else ' over the overturning angle'}; vertical displacement; "
             f"{'slip; ' if has_slid(dataset) else ''}and contact states.",

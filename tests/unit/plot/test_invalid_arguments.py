@@ -130,6 +130,20 @@ def test_response_requires_a_single_complete_run(arguments):
         rf.plot.tradeoff(arguments["rungs"].drop_vars("history_error"))
 
 
+def test_a_window_outside_the_motion_is_refused():
+    """It ended in an error of an empty sequence, or in a figure without the history."""
+    for motions in (PULSE, [PULSE, PULSE.scaled(2.0)]):
+        for draw in (rf.plot.motion, rf.plot.spectra):
+            with pytest.raises(ComponentError, match=r"the window holds 0 of the motion's samples"):
+                draw(motions, window=("100 s", None))
+
+
+def test_a_panel_given_twice_is_refused(arguments):
+    """The first of the two remained empty."""
+    with pytest.raises(ComponentError, match=r"each once, got \('rotation', 'rotation'\)"):
+        rf.plot.response(arguments["run"], panels=("rotation", "rotation"))
+
+
 def test_converted_histories_are_plotted_in_their_unit():
     """Rotations in degrees are not divided by an overturning angle in radians."""
     system = rf.System(rf.Block(width="0.6 m", height="2 m", mass="400 kg"))
