@@ -175,18 +175,13 @@ def _note_constructors(
 ) -> None:
     """Note which other constructors take the keys that this one does not know."""
     for name in unknown:
-        ways = [
-            way
+        ways = " or ".join(
+            f'"{way}"'
             for way, constructor in constructors(kind).items()
             if name in arguments_of(constructor)
-        ]
+        )
         if ways:
-            file.add_fault(
-                (*where, name),
-                f"{name!r} goes with {CONSTRUCTOR} = {' or '.join(map(repr, ways))}".replace(
-                    "'", '"'
-                ),
-            )
+            file.add_fault((*where, name), f'"{name}" goes with {CONSTRUCTOR} = {ways}')
 
 
 _POINT: Final = re.compile(r"\((?P<numbers>[^()]+)\) (?P<unit>\S+)")
