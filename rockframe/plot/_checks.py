@@ -219,13 +219,10 @@ def figure_data(value: object, function: str, units: UnitsLike = None) -> xr.Dat
 def _checked_kind(value: object, function: str, kind: DatasetKind) -> xr.Dataset:
     if not isinstance(value, xr.Dataset) or not _has_variables(value, kind.identifying):
         raise SchemaError(mismatch_message(function, value))
-    missing = [
-        repr(name) for name in (*kind.identifying, *kind.required) if name not in value.variables
-    ]
+    needed = (*kind.identifying, *kind.required)
+    missing = ", ".join(repr(name) for name in needed if name not in value.variables)
     if missing:
-        raise _mismatch_error(
-            function, f"one that lacks {', '.join(missing)}; give it the whole dataset"
-        )
+        raise _mismatch_error(function, f"one that lacks {missing}; give it the whole dataset")
     return value
 
 
@@ -257,10 +254,7 @@ def system_of_run(run: xr.Dataset, function: str) -> System:
 
 def mismatch_message(function: str, value: object) -> str:
     """Write what a function draws, what was given, and how the latter can be drawn."""
-    what, way = _describe_value(function, value)
-    return f"rf.plot.{function} needs {_required_data(function)}, got {what}" + (
-        f"; {way}" if way else ""
-    )
+    return str(_mismatch_error(function, "; ".join(filter(None, _describe_value(function, value)))))
 
 
 def _describe_value(function: str, value: object) -> tuple[str, str]:

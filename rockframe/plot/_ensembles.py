@@ -53,17 +53,14 @@ def ensemble(
         ("simultaneous", 0.12, "bounds everywhere at once"),
         ("cumulative_probability", 0.25, "bounds at each value"),
     ):
-        low, high = (data[f"{name}_{end}_bound"].to_numpy() for end in ("lower", "upper"))
+        low, high = _bounds(data, name)
         label = words if np.isfinite(low).any() else None
         axes.fill_between(
             values, low, high, step="post", color=COLOURS[0], alpha=alpha, lw=0.0, label=label
         )
     axes.step(values, data["cumulative_probability"], where="post", color=COLOURS[0])
     axes.set(xlabel=variable_label(values), ylabel="share of the ensemble [-]", ylim=(0.0, 1.02))
-    grid(axes)
-    sheet.add_common_legend()
-    sheet.set_title(with_superscripts(str(data.attrs["verdict"])), title)
-    return axes
+    return sheet.finish(with_superscripts(str(data.attrs["verdict"])), title)
 
 
 @draws(
@@ -127,6 +124,11 @@ def probability(
     return sheet.panels
 
 
+def _bounds(dataset: xr.Dataset, name: str) -> Any:
+    """Return the lower and the upper bound of a variable."""
+    return np.stack([dataset[f"{name}_{end}_bound"].to_numpy() for end in ("lower", "upper")])
+
+
 def _shares(verdicts: Any, groups: Any, count: int) -> Any:
     """Return the shares that overturned in groups, NaN in one that equal values leave empty."""
     sizes = np.bincount(groups, minlength=count)
@@ -182,9 +184,9 @@ def subset_simulation(
     largest = float(demand[finite].max(initial=0.0)) or 1.0
     plotted_at = limit if np.isfinite(limit) else 1.08 * largest
     probability = float(data[_PROBABILITY])
-    bounds = [float(data[f"{_PROBABILITY}_{end}_bound"]) for end in ("lower", "upper")]
+    bounds = _bounds(data, _PROBABILITY)
     if probability > 0.0:
-        errors = np.abs(np.array(bounds) - probability)[:, None]
+        errors = np.abs(bounds - probability)[:, None]
         axes.errorbar(
             plotted_at, probability, yerr=errors, fmt="D", ms=5.0, capsize=3.0, color="0.1"
         )
@@ -194,9 +196,7 @@ def subset_simulation(
         yscale="log", xlabel="response over its limit [-]", xlim=(0.0, None),
         ylabel="probability of reaching it [-]",
     )  # fmt: skip
-    grid(axes)
-    sheet.set_title(with_superscripts(str(data.attrs["verdict"])), title)
-    return axes
+    return sheet.finish(with_superscripts(str(data.attrs["verdict"])), title)
 
 
 _MAX_GROUPS: Final = 12
@@ -310,10 +310,9 @@ def _draw_curves(axes: Axes, named: list[tuple[str, xr.Dataset]], measure: str) 
         colour, dashes = line_colour(number), line_style(number // len(COLOURS))
         along = curve[measure].to_numpy()
         if int(curve["fragility_status"]) in _FITTED_STATUSES:
-            low, high = (
-                curve[f"{_PROBABILITY}_{end}_bound"].to_numpy() for end in ("lower", "upper")
+            axes.fill_between(
+                along, *_bounds(curve, _PROBABILITY), color=colour, alpha=0.15, linewidth=0.0
             )
-            axes.fill_between(along, low, high, color=colour, alpha=0.15, linewidth=0.0)
             separated = int(curve["fragility_status"]) == FragilityStatus.SEPARATED
             words = f"{name}: separated" if separated else name
             axes.plot(
@@ -322,8 +321,7 @@ def _draw_curves(axes: Axes, named: list[tuple[str, xr.Dataset]], measure: str) 
         else:
             axes.plot([], [], color=colour, label=f"{name}: no fit")
         fraction = curve["stripe_fraction"].to_numpy()
-        bounds = [curve[f"stripe_fraction_{end}_bound"].to_numpy() for end in ("lower", "upper")]
-        errors = np.abs(np.stack(bounds) - fraction)
+        errors = np.abs(_bounds(curve, "stripe_fraction") - fraction)
         errors[:, curve["stripe_trials"].to_numpy() < 2] = np.nan  # no bounds from a single trial
         # side by side, since limit states are counted at the same intensities
         intensity = curve["stripe_intensity"].to_numpy() * 1.012 ** (

@@ -2,6 +2,7 @@
 
 from typing import Any, Final
 
+import numpy as np
 import xarray as xr
 
 from rockframe.plot._axes import (
@@ -12,7 +13,6 @@ from rockframe.plot._axes import (
     PURPLE,
     SKY,
     VERMILLION,
-    colour_steps,
     figure_units,
     grid,
     intensity_label,
@@ -121,12 +121,10 @@ def rocking_spectrum(
     """
     data = figure_data(dataset, "rocking_spectrum", units)
     peaks = data["peak_relative_rotation"].clip(max=PEAK_CAP)
-    sheet = _draw_by_slenderness(ax, "rocking_spectrum", peaks, ylim=(0.0, 1.06))
+    words = r"peak of $|\alpha|/\theta$ [-]"
+    sheet = _draw_by_slenderness(ax, "rocking_spectrum", peaks, words, ylim=(0.0, 1.06))
     for axes in sheet.panels:
         axes.axhline(PEAK_CAP, color="0.5", lw=0.8, ls=":")
-    sheet.axes.set_ylabel(r"peak of $|\alpha|/\theta$ [-]")
-    if data.sizes["motion"] <= _MAX_NAMED:
-        sheet.add_common_legend()
     sheet.set_title("Rocking spectrum", title)
     return sheet.panels
 
@@ -156,10 +154,8 @@ def overturning_spectrum(
     """
     data = figure_data(dataset, "overturning_spectrum", units)
     measure = data["capacity_intensity"].rename(str(data.attrs["intensity"]))
-    sheet = _draw_by_slenderness(ax, "overturning_spectrum", measure, yscale="log")
-    sheet.axes.set_ylabel(intensity_label(measure, data))
-    if data.sizes["motion"] <= _MAX_NAMED:
-        sheet.add_common_legend()
+    words = intensity_label(measure, data)
+    sheet = _draw_by_slenderness(ax, "overturning_spectrum", measure, words, yscale="log")
     sheet.set_title("Least intensity that overturns", title)
     return sheet.panels
 
@@ -170,18 +166,26 @@ def _impact_label(count: int, counted: int) -> str:
     return f"overturns {text}{' or more' if count == counted else ''}"
 
 
-def _draw_by_slenderness(ax: AxesLike, function: str, values: xr.DataArray, **style: Any) -> Sheet:
+def _draw_by_slenderness(
+    ax: AxesLike, function: str, values: xr.DataArray, words: str, **style: Any
+) -> Sheet:
     """Draw a line for each motion over the size of the block, in a panel for each slenderness."""
+    from matplotlib import colormaps
+
     names = [f"H/B = {float(value):.3g}" for value in values["slenderness"]]
     sheet = make_sheet(
         ax, function, names, (1.2 + 3.2 * len(names), 3.9), ncols=len(names), sharey=True
     )
+    motions = unique_labels(map(str, values["motion"].to_numpy()))
+    colours = colormaps["viridis"](np.linspace(0.1, 0.85, len(motions)))
     for place, axes in enumerate(sheet.panels):
-        motions = unique_labels(map(str, values["motion"].to_numpy()))
-        for number, colour in enumerate(colour_steps(values["motion"])):
-            curve, label = values.isel(slenderness=place, motion=number), motions[number]
+        for number, (label, colour) in enumerate(zip(motions, colours, strict=True)):
+            curve = values.isel(slenderness=place, motion=number)
             axes.plot(curve["rocking_period"], curve, color=colour, lw=1.0, label=label)
         axes.set(xscale="log", xlabel=r"$2\pi/p$ [s]", title=names[place], **style)
         grid(axes)
         label_log_ticks(axes)
+    sheet.axes.set_ylabel(words)
+    if len(motions) <= _MAX_NAMED:
+        sheet.add_common_legend()
     return sheet
