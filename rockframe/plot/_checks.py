@@ -1,6 +1,5 @@
 """The datasets that figures are drawn from, and messages on anything else."""
 
-import json
 import warnings
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -12,6 +11,7 @@ from typing import Any, Final, TypeVar, cast
 import numpy as np
 import xarray as xr
 
+from rockframe.arguments import json_attribute
 from rockframe.errors import RockframeWarning, SchemaError
 from rockframe.motion import GroundMotion
 from rockframe.shared_arguments import (
@@ -249,7 +249,7 @@ def system_of_run(run: xr.Dataset, function: str) -> System:
         warnings.simplefilter("ignore", RockframeWarning)  # issued already by the run
         if SWEEP_ATTRIBUTE in run.attrs:
             return system_of_case(run, owner=f"rf.plot.{function}")
-        return System.from_dict(json.loads(str(text)))
+        return System.from_dict(json_attribute(run, "system_json", owner=f"rf.plot.{function}"))
 
 
 def mismatch_message(function: str, value: object) -> str:

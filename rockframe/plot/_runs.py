@@ -1,6 +1,5 @@
 """The runs of a figure: one, or several to compare, and the window of time."""
 
-import json
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any, TypeAlias
@@ -8,6 +7,7 @@ from typing import Any, TypeAlias
 import numpy as np
 import xarray as xr
 
+from rockframe.arguments import json_attribute
 from rockframe.errors import ComponentError, short_repr
 from rockframe.plot._axes import line_colour, line_style, unique_labels
 from rockframe.plot._checks import checked_run
@@ -103,7 +103,7 @@ def verdict_of_case(run: xr.Dataset, units: DisplayUnits) -> str:
 
 def _case_label(run: xr.Dataset) -> str:
     """Name the case of a sweep by its coordinates."""
-    axes = [str(axis["name"]) for axis in json.loads(str(run.attrs["axes_json"]))]
+    axes = [str(axis["name"]) for axis in json_attribute(run, "axes_json", owner="rf.plot")]
     names = [name for name in ("motion", *axes) if name in run.coords and not run[name].dims]
     labels = [(name.replace("_", " "), run[name].item(), run[name].attrs) for name in names]
     words = [

@@ -8,6 +8,7 @@ import numpy as np
 import xarray as xr
 
 from rockframe.arguments import checked_bool, checked_choice
+from rockframe.errors import ComponentError, short_repr
 from rockframe.measures import fourier_spectrum, response_spectrum, velocity_and_displacement
 from rockframe.motion.quantities import ArrayLike
 from rockframe.plot._axes import (
@@ -230,13 +231,20 @@ def suite(
     """
     data = labelled_motions(motions, "suite")
     if target is not None:
-        check_target(target, owner="rf.plot.suite")
+        check_target(target, owner=_SUITE_OWNER)
     shown_average = checked_choice(Average, average, owner=_SUITE_OWNER, name="average")
     comparison = read_window(compared, "suite", "compared")
     unit = figure_units(units, "suite").axis_unit(ACCELERATION, "g", acceleration=acceleration)
     labelled = {curve.label or motions_title(data): curve.motion for curve in data}
     dataset = response_spectrum(labelled, periods, damping_ratio, component=component)
     dataset = dataset.sel(period=dataset["period"] > 0.0)
+    if dataset.sizes["damping_ratio"] != 1:
+        msg = f"{_SUITE_OWNER}: damping_ratio must be one number, got {short_repr(damping_ratio)}"
+        raise ComponentError(msg)
+    if not dataset.sizes["period"]:
+        msg = f"{_SUITE_OWNER}: found no period above zero in {short_repr(periods)}"
+        raise ComponentError(msg)
+    damping = float(dataset["damping_ratio"].item())
     values = unit.of(
         dataset["pseudo_spectral_acceleration"].squeeze("damping_ratio").transpose("motion", ...)
     )
@@ -261,10 +269,11 @@ def suite(
     if target is not None:
         low, high = target.limits
         target_period = period[(period >= low) & (period <= high)]
-        target_values = target.at((target_period, "s"))
-        sheet.axes.plot(
-            target_period, unit.of(target_values), color=VERMILLION, linewidth=1.8, label="target"
-        )
+        target_values = unit.of(target.at((target_period, "s")))
+        words = "target"
+        if not np.isclose(target.damping_ratio, damping):
+            words = f"target, {100.0 * target.damping_ratio:g} % damping"
+        sheet.axes.plot(target_period, target_values, color=VERMILLION, linewidth=1.8, label=words)
     sheet.axes.set(
         xscale="log", yscale="log", xlabel="period [s]",
         ylabel=axis_label("pseudo-spectral acceleration", unit.words),
@@ -277,7 +286,6 @@ def suite(
     grid(sheet.axes)
     add_legend(sheet.axes)
     count = len(data)
-    damping = float(dataset["damping_ratio"].to_numpy().ravel()[0])
     usual = f"{count} motion{'s' if count > 1 else ''}; damping {100.0 * damping:g} %"
     sheet.set_title(usual, title)
     return sheet.axes

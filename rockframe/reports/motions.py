@@ -1,6 +1,5 @@
 """The motions in a report: metadata of their records, spectra, and the target."""
 
-import json
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
 from typing import Any, Final, TypeAlias, cast
@@ -10,7 +9,7 @@ import xarray as xr
 from numpy.typing import NDArray
 
 from rockframe import plot
-from rockframe.arguments import is_iterable
+from rockframe.arguments import is_iterable, json_attribute
 from rockframe.errors import ComponentError, short_repr
 from rockframe.motion import GroundMotion
 from rockframe.reports import page
@@ -78,7 +77,7 @@ def available_motions(dataset: xr.Dataset, value: object, owner: str) -> dict[st
     if "motions_json" not in dataset.attrs:
         return named
     available = known_motions(dataset, value)
-    descriptions = json.loads(dataset.attrs["motions_json"])
+    descriptions = json_attribute(dataset, "motions_json", owner=owner)
     digests = {str(description.get("sha256")) for description in descriptions if description}
     digests |= {motion.sha256 for motion in available.values()}
     unknown = [label for label, motion in named.items() if motion.sha256 not in digests]
