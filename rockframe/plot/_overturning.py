@@ -121,10 +121,12 @@ def rocking_spectrum(
     """
     data = figure_data(dataset, "rocking_spectrum", units)
     peaks = data["peak_relative_rotation"].clip(max=PEAK_CAP)
-    words = r"peak of $|\alpha|/\theta$ [-]"
-    sheet = _draw_by_slenderness(ax, "rocking_spectrum", peaks, words, ylim=(0.0, 1.06))
+    sheet = _draw_by_slenderness(ax, "rocking_spectrum", peaks, ylim=(0.0, 1.06))
     for axes in sheet.panels:
         axes.axhline(PEAK_CAP, color="0.5", lw=0.8, ls=":")
+    sheet.axes.set_ylabel(r"peak of $|\alpha|/\theta$ [-]")
+    if data.sizes["motion"] <= _MAX_NAMED:
+        sheet.add_common_legend()
     sheet.set_title("Rocking spectrum", title)
     return sheet.panels
 
@@ -154,8 +156,10 @@ def overturning_spectrum(
     """
     data = figure_data(dataset, "overturning_spectrum", units)
     measure = data["capacity_intensity"].rename(str(data.attrs["intensity"]))
-    words = intensity_label(measure, data)
-    sheet = _draw_by_slenderness(ax, "overturning_spectrum", measure, words, yscale="log")
+    sheet = _draw_by_slenderness(ax, "overturning_spectrum", measure, yscale="log")
+    sheet.axes.set_ylabel(intensity_label(measure, data))
+    if data.sizes["motion"] <= _MAX_NAMED:
+        sheet.add_common_legend()
     sheet.set_title("Least intensity that overturns", title)
     return sheet.panels
 
@@ -166,9 +170,7 @@ def _impact_label(count: int, counted: int) -> str:
     return f"overturns {text}{' or more' if count == counted else ''}"
 
 
-def _draw_by_slenderness(
-    ax: AxesLike, function: str, values: xr.DataArray, words: str, **style: Any
-) -> Sheet:
+def _draw_by_slenderness(ax: AxesLike, function: str, values: xr.DataArray, **style: Any) -> Sheet:
     """Draw a line for each motion over the size of the block, in a panel for each slenderness."""
     from matplotlib import colormaps
 
@@ -185,7 +187,4 @@ def _draw_by_slenderness(
         axes.set(xscale="log", xlabel=r"$2\pi/p$ [s]", title=names[place], **style)
         grid(axes)
         label_log_ticks(axes)
-    sheet.axes.set_ylabel(words)
-    if len(motions) <= _MAX_NAMED:
-        sheet.add_common_legend()
     return sheet
