@@ -104,10 +104,7 @@ def escape_mathtext(text: str) -> str:
 
 
 def as_label(name: str, max_length: int = _MAX_LABEL_LENGTH) -> str:
-    """Return a name without the meaning of ``$`` and ``_`` in matplotlib, in legends too.
-
-    Long names are shortened in the middle, to leave room for the data.
-    """
+    """Return a name as matplotlib writes it letter by letter; a long one without its middle."""
     if len(name) > max_length:
         name = f"{name[: max_length - max_length // 3 - 3]}...{name[-(max_length // 3) :]}"
     # legends omit names that begin with an underscore

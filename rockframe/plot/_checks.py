@@ -185,10 +185,7 @@ def figure_function_name(dataset: xr.Dataset) -> str:
 
 
 def checked_run(value: object, function: str) -> xr.Dataset:
-    """Return the result of one run with histories up to its end; raise on anything else.
-
-    The histories of a case of a sweep are padded with NaN to the length of the longest case.
-    """
+    """Return the result of one run with histories up to its end; raise on anything else."""
     owner = f"rf.plot.{function}"
     value = in_units_of_schema(_checked_kind(value, function, RUN), owner=owner)
     value = value.assign_coords(
@@ -201,6 +198,7 @@ def checked_run(value: object, function: str) -> xr.Dataset:
     if more:
         way = f"pick one, for example with dataset.isel({more[0]}=0)"
         raise _mismatch_error(function, f"several runs over {', '.join(more)}; {way}")
+    # histories of a case of a sweep have NaN up to the length of the longest case
     samples = np.flatnonzero(~np.isnan(value["relative_rotation"].to_numpy()))
     if not len(samples):
         raise _mismatch_error(function, "a case without a result")
@@ -310,10 +308,8 @@ def _has_variables(dataset: xr.Dataset, names: tuple[str, ...]) -> bool:
 
 
 def overturning_angles(dataset: xr.Dataset) -> tuple[float, float]:
-    """Return the overturning angles to the left and to the right [rad].
-
-    In a sweep those of both sides are NaN for a case whose body is symmetric.
-    """
+    """Return the overturning angles to the left and to the right [rad]."""
+    # in a sweep those of both sides are NaN for a case whose body is symmetric
     least = dataset["overturning_angle"]
     left, right = (dataset.get(f"{side}_overturning_angle", least) for side in ("left", "right"))
     return float(left.fillna(least)), float(right.fillna(least))

@@ -125,10 +125,7 @@ class Sheet:
     def add_legend(
         self, handles: Sequence[Any], labels: Sequence[str], *, columns: int = 12, **style: Any
     ) -> None:
-        """Write a legend below a new figure, or above the data of the last given panel.
-
-        It has as many columns as there is room for, at most `columns`.
-        """
+        """Write a legend below a new figure, as wide as it, or above the data of the last panel."""
         if self.own_figure is None or not labels:
             add_legend(self.panels[-1], (handles, labels))
             return

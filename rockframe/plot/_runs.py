@@ -117,8 +117,10 @@ def _labelled_runs(value: Any) -> tuple[list[str] | None, list[Any]]:
     """Return the labels of several runs, and the runs; a single one has no label."""
     keyed = isinstance(value, Mapping) and not isinstance(value, xr.Dataset)
     runs: list[Any] = []
-    if keyed or isinstance(value, list | tuple):
-        runs = [*value.values()] if keyed else [*value]
+    if keyed:
+        runs = [*value.values()]
+    elif isinstance(value, list | tuple):
+        runs = [*value]
     if not runs or not all(isinstance(run, xr.Dataset) for run in runs):
         return None, [value]
     if keyed:

@@ -191,10 +191,7 @@ _FROM_MEMBERS: Final = "from_members"
 
 
 def toml_tables(parts: Iterable[Component]) -> list[tuple[str, list[str]]]:
-    """Return the tables of parts: the head of each, and its keys with their values.
-
-    One below the other they are a file of the same parts.
-    """
+    """Return the tables of parts, each with its head and keys; together they are a file."""
     listed = [*parts]
     several = sum(slot_of_class(type(part)) == RESTRAINER for part in listed) > 1
     return [row for part in listed for row in _part_tables(part, several=several)]
