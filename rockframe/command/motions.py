@@ -66,6 +66,9 @@ def _picture_paths(picture: str | None, count: int) -> list[Path]:
     if picture is None:
         return []
     path = Path(picture)
+    if picture == STREAM and count > 1:
+        words = f"{count} pictures do not fit into it; name one motion, or a file ending in .png"
+        raise FileError(STREAM, words)
     if count == 1 or not path.name:
         return [path]
     return [path.with_stem(f"{path.stem}-{number}") for number in range(1, count + 1)]

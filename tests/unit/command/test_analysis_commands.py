@@ -160,6 +160,13 @@ def test_map_command_takes_a_harmonic_motion_of_the_scene(run_command, folder):
     assert (code, "pulse needs an amplitude and a frequency" in problem) == (2, True)
 
 
+@pytest.mark.usefixtures("records")
+def test_pictures_of_several_motions_need_the_name_of_a_file(run_command):
+    """The message was about a file called --1."""
+    code, _, problem = run_command("motion", "records", "--picture", "-")
+    assert (code, "-: 5 pictures do not fit into it; name" in problem) == (2, True)
+
+
 def test_animate_command_writes_page_and_film(run_command):
     assert run_command("run", "scene.toml", "-o", "out.nc")[0] == 0
     code, out, _ = run_command("animate", "out.nc", "-o", "run.html", "--title", "A <tower>")
