@@ -1,5 +1,6 @@
 """Checks of arguments without a unit: one of a few words, a text, a whole number, or a dataset."""
 
+import json
 from collections.abc import Callable, Iterable, Mapping
 from enum import StrEnum
 from inspect import Parameter, Signature, signature
@@ -138,3 +139,12 @@ def checked_dataset(value: object, *, owner: str) -> xr.Dataset:
         "first"
     )
     raise SchemaError(msg)
+
+
+def json_attribute(dataset: xr.Dataset, name: str, *, owner: str, default: str = "{}") -> Any:
+    """Read an attribute of a dataset that is a text in JSON."""
+    try:
+        return json.loads(str(dataset.attrs.get(name, default)))
+    except ValueError as problem:
+        msg = f"{owner}: the dataset's attribute {name!r} is damaged ({problem})"
+        raise SchemaError(msg) from problem

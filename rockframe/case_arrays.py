@@ -168,34 +168,27 @@ def maximum(first: Any, second: Any) -> Any:
     return max(first, second)
 
 
-def _unary(function: Callable[[float], float]) -> Callable[[Any], Any]:
-    """Extend a function of one number to many cases."""
+def _elementwise(function: Callable[..., float]) -> Callable[..., Any]:
+    """Extend a function of numbers to many cases."""
 
-    def wrapped(number: Any) -> Any:
-        if isinstance(number, CaseArray):
-            # functions of NumPy differ in the last bits
-            return CaseArray(np.array(list(map(function, number.values.tolist()))))
-        return function(number)
-
-    wrapped.__doc__ = function.__doc__
-    return wrapped
-
-
-def _binary(function: Callable[[float, float], float]) -> Callable[[Any, Any], Any]:
-    def wrapped(first: Any, second: Any) -> Any:
-        if isinstance(first, CaseArray) or isinstance(second, CaseArray):
-            count = len(first.values if isinstance(first, CaseArray) else second.values)
-            operands = values_by_case(first, count).tolist(), values_by_case(second, count).tolist()
-            return CaseArray(np.array(list(map(function, *operands))))
-        return function(first, second)
+    def wrapped(*numbers: Any) -> Any:
+        for number in numbers:
+            if isinstance(number, CaseArray):
+                count = len(number.values)
+                break
+        else:
+            return function(*numbers)
+        # functions of NumPy differ in the last bits
+        operands = (values_by_case(number, count).tolist() for number in numbers)
+        return CaseArray(np.array(list(map(function, *operands))))
 
     wrapped.__doc__ = function.__doc__
     return wrapped
 
 
-sin, cos, tan = _unary(math.sin), _unary(math.cos), _unary(math.tan)
-asin, atan = _unary(math.asin), _unary(math.atan)
-atan2, hypot = _binary(math.atan2), _binary(math.hypot)
+sin, cos, tan = map(_elementwise, (math.sin, math.cos, math.tan))
+asin, atan = map(_elementwise, (math.asin, math.atan))
+atan2, hypot = map(_elementwise, (math.atan2, math.hypot))
 
 
 def sqrt(number: Any) -> Any:
@@ -205,11 +198,9 @@ def sqrt(number: Any) -> Any:
 
 def ceil(number: Any) -> int:
     """Round up to a whole number."""
-    return (
-        int(CaseArray(np.ceil(number.values)))
-        if isinstance(number, CaseArray)
-        else math.ceil(number)
-    )
+    if isinstance(number, CaseArray):
+        return int(CaseArray(np.ceil(number.values)))
+    return math.ceil(number)
 
 
 def isfinite(number: Any) -> bool:
@@ -221,8 +212,6 @@ def isfinite(number: Any) -> bool:
 
 def isnan(number: Any) -> bool:
     """Tell whether a number is NaN."""
-    return (
-        _common_truth(np.isnan(number.values))
-        if isinstance(number, CaseArray)
-        else math.isnan(number)
-    )
+    if isinstance(number, CaseArray):
+        return _common_truth(np.isnan(number.values))
+    return math.isnan(number)

@@ -88,9 +88,14 @@ def with_shared_arguments(
                 more_named = {name: named.pop(name) for name in unknown}
                 mapping = {} if named.get(extra_into) is None else named[extra_into]
                 if isinstance(mapping, Mapping):  # the function refuses anything else
-                    named[extra_into] = _merged_arguments(
-                        function.__qualname__, extra_into, mapping, more_named
-                    )
+                    twice = [name for name in unknown if name in mapping]
+                    if twice:
+                        msg = (
+                            f"{function.__qualname__}() got {twice[0]!r} twice, also in "
+                            f"{extra_into!r}"
+                        )
+                        raise ArgumentError(msg)
+                    named[extra_into] = {**mapping, **more_named}
             try:
                 return function(*values, **{**defaults, **named})
             except TypeError as problem:
@@ -103,17 +108,6 @@ def with_shared_arguments(
         return cast("Function", call)
 
     return decorate
-
-
-def _merged_arguments(
-    function: str, name: str, mapping: Mapping[Any, Any], more: Mapping[str, Any]
-) -> dict[Any, Any]:
-    """Add arguments to those of a mapping; refuse one that is given twice."""
-    twice = [key for key in more if key in mapping]
-    if twice:
-        msg = f"{function}() got {twice[0]!r} twice, also in {name!r}"
-        raise ArgumentError(msg)
-    return {**mapping, **more}
 
 
 def _unknown_argument(function: str, name: str, known: Iterable[str]) -> str:

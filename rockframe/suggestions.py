@@ -143,10 +143,7 @@ else:
 
 
 class SuggestingMeta(ABCMeta):
-    """Metaclass of classes that propose a similar name for a misspelt constructor.
-
-    Derived classes may be abstract.
-    """
+    """Metaclass of classes, abstract ones too, that propose a name for a misspelt constructor."""
 
     if not TYPE_CHECKING:  # or no name would be unknown to type checkers
 

@@ -2,7 +2,7 @@
 
 import math
 from collections.abc import Mapping
-from typing import Final, NamedTuple, Self
+from typing import Final
 
 from rockframe.codes.check import peak_responses, read_motions, rigid_block_setting, scene_summary
 from rockframe.components import Block
@@ -14,11 +14,6 @@ from rockframe.units import POSITIVE, QuantityLike, RatioLike, Unit, to_ratio
 
 _OWNER: Final = "asce_7_22"
 _CODE: Final = "ASCE/SEI 7-22, chapter 13"
-_MIN_FORCE_FACTOR: Final = 0.3
-_MAX_FORCE_FACTOR: Final = 1.6
-_VERTICAL_FORCE_FACTOR: Final = 0.2
-_RESISTING_SHARE: Final = 0.9
-"""Share of the weight that counts against tipping."""
 
 
 @with_hints()
@@ -98,17 +93,20 @@ def asce_7_22(
         available_friction = to_ratio(
             friction, owner=_OWNER, name="friction", condition=POSITIVE, example="0.4"
         )
-    forces = _SeismicForces.of(factors, setting.body.mass * setting.gravity)
+    forces = _force_lines(factors, setting.body.mass * setting.gravity)
     # a rear wall prevents tipping to one side
     height, smaller_angle = setting.body.centre_height, min(setting.overturning_angles)
     lines = {
         "Factors": tuple(
             CheckedLine(name, value, Unit.ONE, "factor", "given") for name, value in factors.items()
         ),
-        "Forces": forces.lines(),
+        "Forces": forces,
     }
     lines["Statics, without anchors"], verdicts = _check_statics(
-        forces, height, height * math.tan(smaller_angle), available_friction
+        {line.symbol: line.value for line in forces},
+        height,
+        height * math.tan(smaller_angle),
+        available_friction,
     )
     if floor_motions is not None:
         runs = peak_responses(system, read_motions(floor_motions, _OWNER), free_vibration)
@@ -131,58 +129,35 @@ def asce_7_22(
     )
 
 
-class _SeismicForces(NamedTuple):
-    """Seismic forces on a component [N], equation 13.3-1 and its limits."""
-
-    weight: float
-    by_formula: float
-    minimum: float
-    maximum: float
-    vertical: float
-
-    @classmethod
-    def of(cls, factors: Mapping[str, float], weight: float) -> Self:
-        """Compute the forces from the factors of the code."""
-        base = factors["S_DS"] * factors["I_p"] * weight
-        by_formula = 0.4 * base * factors["H_f"] / factors["R_mu"]
-        return cls(
-            weight, by_formula * factors["C_AR"] / factors["R_po"],
-            _MIN_FORCE_FACTOR * base, _MAX_FORCE_FACTOR * base,
-            _VERTICAL_FORCE_FACTOR * factors["S_DS"] * weight,
-        )  # fmt: skip
-
-    @property
-    def horizontal(self) -> float:
-        """F_p, within its limits [N]."""
-        return min(max(self.by_formula, self.minimum), self.maximum)
-
-    def lines(self) -> tuple[CheckedLine, ...]:
-        """Return the forces as lines of the check."""
-        newton = Unit.NEWTON
-        return (
-            CheckedLine("W_p", self.weight, newton, "weight", "of the block"),
-            CheckedLine("F_p, formula", self.by_formula, newton,
-                        "0.4 S_DS I_p W_p (H_f/R_mu) (C_AR/R_po)", "13.3-1"),
-            CheckedLine("F_p, least", self.minimum, newton, "0.3 S_DS I_p W_p", "13.3.1"),
-            CheckedLine("F_p, greatest", self.maximum, newton, "1.6 S_DS I_p W_p", "13.3.1"),
-            CheckedLine("F_p", self.horizontal, newton, "horizontal force at the centre of mass",
-                        "13.3.1"),
-            CheckedLine("F_v", self.vertical, newton,
-                        "vertical force at the same time, up or down, 0.2 S_DS W_p", "13.3.1"),
-        )  # fmt: skip
+def _force_lines(factors: Mapping[str, float], weight: float) -> tuple[CheckedLine, ...]:
+    """Return the seismic forces on a component, equation 13.3-1 and its limits."""
+    newton, base = Unit.NEWTON, factors["S_DS"] * factors["I_p"] * weight
+    by_formula = 0.4 * base * factors["H_f"] / factors["R_mu"] * factors["C_AR"] / factors["R_po"]
+    least, greatest = 0.3 * base, 1.6 * base
+    return (
+        CheckedLine("W_p", weight, newton, "weight", "of the block"),
+        CheckedLine("F_p, formula", by_formula, newton,
+                    "0.4 S_DS I_p W_p (H_f/R_mu) (C_AR/R_po)", "13.3-1"),
+        CheckedLine("F_p, least", least, newton, "0.3 S_DS I_p W_p", "13.3.1"),
+        CheckedLine("F_p, greatest", greatest, newton, "1.6 S_DS I_p W_p", "13.3.1"),
+        CheckedLine("F_p", min(max(by_formula, least), greatest), newton,
+                    "horizontal force at the centre of mass", "13.3.1"),
+        CheckedLine("F_v", 0.2 * factors["S_DS"] * weight, newton,
+                    "vertical force at the same time, up or down, 0.2 S_DS W_p", "13.3.1"),
+    )  # fmt: skip
 
 
 def _check_statics(
-    forces: _SeismicForces, height: float, arm: float, friction: float | None
+    forces: Mapping[str, float], height: float, arm: float, friction: float | None
 ) -> tuple[tuple[CheckedLine, ...], list[CheckedVerdict]]:
     """Return moments and friction without anchors, with verdicts; `arm` is the shorter one [m]."""
-    resisting_weight = _RESISTING_SHARE * forces.weight
-    net_weight = max(resisting_weight - forces.vertical, 0.0)
-    tipping, resisting = forces.horizontal * height, net_weight * arm
+    horizontal, moment = forces["F_p"], Unit.NEWTON_METRE
+    resisting_weight = 0.9 * forces["W_p"]
+    net_weight = max(resisting_weight - forces["F_v"], 0.0)
+    tipping, resisting = horizontal * height, net_weight * arm
     # the vertical force may exceed the weight, and then adds to the moment of the anchors
-    anchor_moment = tipping - (resisting_weight - forces.vertical) * arm
-    required_friction = forces.horizontal / net_weight if net_weight > 0.0 else math.inf
-    moment = Unit.NEWTON_METRE
+    anchor_moment = tipping - (resisting_weight - forces["F_v"]) * arm
+    required_friction = horizontal / net_weight if net_weight > 0.0 else math.inf
     lines = (
         CheckedLine("M_OT", tipping, moment, "F_p times the height of the centre of mass",
                     "equilibrium"),
@@ -192,7 +167,7 @@ def _check_statics(
                     "13.3.1"),
         CheckedLine("M_anchors", max(anchor_moment, 0.0), moment,
                     "what anchors must carry, M_OT - M_R, with F_v", "equilibrium"),
-        CheckedLine("mu", forces.horizontal / resisting_weight, Unit.ONE,
+        CheckedLine("mu", horizontal / resisting_weight, Unit.ONE,
                     "friction to stay without anchors, F_p/(0.9 W_p)", "equilibrium"),
         CheckedLine("mu, with F_v", required_friction, Unit.ONE, "F_p/(0.9 W_p - F_v)", "13.3.1"),
     )  # fmt: skip

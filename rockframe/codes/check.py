@@ -79,14 +79,13 @@ def peak_responses(
     """Return the largest motion of the block, and of a point of it [m], under each motion."""
     x, y = point
     points = {"point": (f"{x!r} m", f"{y!r} m")}
-    responses: dict[str, PeakResponse] = {}
-    for label, motion in motions.items():
+
+    def response(motion: GroundMotion) -> PeakResponse:
         run = system.simulate(motion, outputs=None, free_vibration=free_vibration, points=points)
         displacement = float(run.peak_point_horizontal_displacement[0])
-        responses[label] = PeakResponse(
-            float(run.peak_rotation), bool(run.overturned), displacement
-        )
-    return responses
+        return PeakResponse(float(run.peak_rotation), bool(run.overturned), displacement)
+
+    return {label: response(motion) for label, motion in motions.items()}
 
 
 def scene_summary(system: System) -> str:

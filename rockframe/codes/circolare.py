@@ -1,14 +1,19 @@
 """Circolare 7/2019, C8.7.1: a local mechanism by kinematic analysis, and by computed motion."""
 
 import math
-import operator
 from collections.abc import Mapping
 from typing import Final, NamedTuple
 
 import numpy as np
 
 from rockframe.arguments import checked_name
-from rockframe.codes.check import peak_responses, read_motions, rigid_block_setting, scene_summary
+from rockframe.codes.check import (
+    PeakResponse,
+    peak_responses,
+    read_motions,
+    rigid_block_setting,
+    scene_summary,
+)
 from rockframe.components import Block, Load
 from rockframe.errors import ComponentError
 from rockframe.measures import response_spectrum
@@ -148,9 +153,11 @@ def circolare_2019(
     ]  # fmt: skip
     lines = {"Mechanism and capacity": capacity, "Demand in displacement": (demand_line,)}
     if motions:
-        displacements = _dynamic_displacements(system, mechanism, motions, free_vibration)
-        lines["Motion of the wall"] = displacements
-        verdicts += _dynamic_verdicts(displacements, values["d_0"], d_limit, limit_state)
+        peaks = peak_responses(system, motions, free_vibration, mechanism.control_point)
+        lines["Motion of the wall"], by_motion = _check_motion(
+            peaks, mechanism.oscillator_ratio, values["d_0"], d_limit, limit_state
+        )
+        verdicts += by_motion
     title = "A rigid block that overturns, by kinematics" + (" and by its motion" * bool(motions))
     return CodeCheck(title, _CODE, lines, tuple(verdicts), _NOTES, scene_summary(system))
 
@@ -198,6 +205,16 @@ class _Mechanism(NamedTuple):
     gravity: float
     edge: float  # place of the edge, to the right of the middle of the base [m]
 
+    def moment(self, *distances: tuple[float, ...]) -> float:
+        """Return the sum of the weights times their distances."""
+        return math.fsum(map(math.prod, zip(self.weights, *distances, strict=True)))
+
+    @property
+    def centre_of_mass(self) -> tuple[float, float]:
+        """Horizontal distance of the common centre of mass from the edge, and height [m]."""
+        weight = self.moment()
+        return self.moment(self.arms) / weight, self.moment(self.heights) / weight
+
     @property
     def control_point(self) -> tuple[float, float]:
         """Place of the common centre of mass, from the middle of the base [m]."""
@@ -205,22 +222,10 @@ class _Mechanism(NamedTuple):
         return self.edge - math.copysign(beside, self.edge), above
 
     @property
-    def centre_of_mass(self) -> tuple[float, float]:
-        """Horizontal distance of the common centre of mass from the edge, and height [m]."""
-        weight = math.fsum(self.weights)
-        return tuple(  # type: ignore[return-value]
-            math.fsum(map(operator.mul, self.weights, distances)) / weight
-            for distances in (self.arms, self.heights)
-        )
-
-    @property
     def oscillator_ratio(self) -> float:
         """Displacement of the equivalent oscillator over that of the centre of mass [1]."""
-        first_moment = math.fsum(map(operator.mul, self.weights, self.heights))
-        second_moment = math.fsum(
-            p * y * y for p, y in zip(self.weights, self.heights, strict=True)
-        )
-        return second_moment / (self.centre_of_mass[1] * first_moment)
+        second_moment = self.moment(self.heights, self.heights)
+        return second_moment / (self.centre_of_mass[1] * self.moment(self.heights))
 
 
 def _mechanism_of(system: System, setting: RigidGroundSetting | RestrainedSetting) -> _Mechanism:
@@ -241,14 +246,11 @@ def _mechanism_of(system: System, setting: RigidGroundSetting | RestrainedSettin
 
 def _capacity_lines(mechanism: _Mechanism, confidence: float) -> tuple[CheckedLine, ...]:
     """Return activation, capacity curve, and displacements and periods of the limit states."""
-    weights, arms, heights, gravity, _ = mechanism
+    heights, moment = mechanism.heights, mechanism.moment
     # virtual work of the weights in a virtual rotation of 1
-    vertical = math.fsum(map(operator.mul, weights, arms))
-    horizontal = math.fsum(map(operator.mul, weights, heights))
-    square = math.fsum(weight * up * up for weight, up in zip(weights, heights, strict=True))
-    multiplier = vertical / horizontal
-    mass_share = horizontal**2 / (math.fsum(weights) * square)
-    spectral = multiplier * gravity / (mass_share * confidence)
+    multiplier = moment(mechanism.arms) / moment(heights)
+    mass_share = moment(heights) ** 2 / (moment() * moment(heights, heights))
+    spectral = multiplier * mechanism.gravity / (mass_share * confidence)
     # displacement at which the centre of mass is vertically above the edge
     ultimate = mechanism.oscillator_ratio * mechanism.centre_of_mass[0]
     lines = [
@@ -298,48 +300,37 @@ def _displacement_demand(
     return float(displacements.mean("motion").max())
 
 
-def _dynamic_displacements(
-    system: System,
-    mechanism: _Mechanism,
-    motions: Mapping[str, GroundMotion],
-    free_vibration: QuantityLike,
-) -> tuple[CheckedLine, ...]:
-    """Return the largest displacement of the equivalent oscillator under each motion."""
-    ultimate_arm = mechanism.centre_of_mass[0]
-    lines: list[CheckedLine] = []
-    for label, peak in peak_responses(
-        system, motions, free_vibration, mechanism.control_point
-    ).items():
-        words = "overturned" if peak.overturned else f"peak rotation {peak.rotation:.4g} rad"
-        displacement = mechanism.oscillator_ratio * (
-            ultimate_arm if peak.overturned else peak.displacement
+def _check_motion(
+    peaks: Mapping[str, PeakResponse], ratio: float, ultimate: float, limit: float, state: str
+) -> tuple[tuple[CheckedLine, ...], list[CheckedVerdict]]:
+    """Return the displacement of the equivalent oscillator under each motion, and the verdicts."""
+    displacements = {
+        label: ultimate if peak.overturned else ratio * peak.displacement
+        for label, peak in peaks.items()
+    }
+    mean, clause = float(np.mean([*displacements.values()])), "C8.7.1.2.1.9"
+    lines = [
+        CheckedLine(
+            f"d, {label}", displacements[label], Unit.METRE,
+            "overturned" if peak.overturned else f"peak rotation {peak.rotation:.4g} rad", "run",
         )
-        lines.append(CheckedLine(f"d, {label}", displacement, Unit.METRE, words, "run"))
-    mean = float(np.mean([line.value for line in lines]))
+        for label, peak in peaks.items()
+    ]  # fmt: skip
     words = "of the largest displacements; overturned ones count d_0"
-    return (*lines, CheckedLine("mean of d", mean, Unit.METRE, words, "C8.7.1.2.1.9"))
-
-
-def _dynamic_verdicts(
-    displacements: tuple[CheckedLine, ...], ultimate: float, limit: float, state: str
-) -> list[CheckedVerdict]:
-    overturned = [
-        line.symbol.removeprefix("d, ") for line in displacements[:-1] if line.words == "overturned"
-    ]
+    lines.append(CheckedLine("mean of d", mean, Unit.METRE, words, clause))
+    overturned = [label for label, peak in peaks.items() if peak.overturned]
     # without a wall, one that is eccentric may stand beyond d_0 on the side of its longer arm
-    beyond = [
-        line for line in displacements[:-1] if line.words != "overturned" and line.value > ultimate
-    ]
-    mean, clause = displacements[-1].value, "C8.7.1.2.1.9"
-    return [
+    beyond = sum(displacement > ultimate for displacement in displacements.values())
+    verdicts = [
         CheckedVerdict(
             "dynamic, no run beyond d_0", not (overturned or beyond),
-            f"{len(overturned)} of {len(displacements) - 1} overturned"
+            f"{len(overturned)} of {len(peaks)} overturned"
             + (f": {', '.join(overturned)}" if overturned else f", d_0 = {ultimate:.4g} m")
-            + (f"; {len(beyond)} beyond d_0 to the other side" if beyond else ""), clause,
+            + (f"; {beyond} beyond d_0 to the other side" if beyond else ""), clause,
         ),
         CheckedVerdict(
             f"dynamic, {state}", not (overturned or beyond) and mean <= limit,
             f"mean of the largest displacements {mean:.4g} m, capacity {limit:.4g} m", clause,
         ),
     ]  # fmt: skip
+    return tuple(lines), verdicts

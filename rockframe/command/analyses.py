@@ -41,6 +41,7 @@ from rockframe.command.shared import (
     with_project,
 )
 from rockframe.command.streams import print_message
+from rockframe.command.typed_calls import parse_value
 from rockframe.errors import ComponentError, FileError, StudyError
 from rockframe.motion import GroundMotion
 from rockframe.motion.description import CONSTRUCTORS
@@ -185,12 +186,12 @@ def _read_limit_state(word: str) -> object:
             msg = f"--limits: expected a number, a name or NAME=VALUE, got {word!r}"
             raise ComponentError(msg) from None
     name, equals, value = word.partition("=")
-    if not equals and name in SCHEMA:
+    if equals:
+        return name.strip(), parse_value(value.strip())
+    if name in SCHEMA:
         msg = f"--limits: {name} needs a limit, as in 'peak_slip=5 cm'"
         raise ComponentError(msg)
-    if not equals:
-        return word
-    return name.strip(), float(value) if re.fullmatch(r"[\d.]+", value.strip()) else value.strip()
+    return word
 
 
 _IDA_KIND: Final = analysis_kind("the result of a dynamic analysis", "capacity_scale", "flip_count")
@@ -262,9 +263,7 @@ def execute_fragility(arguments: argparse.Namespace, answer: Answer) -> int:
     except StudyError as problem:
         if not known or NOT_GIVEN not in str(problem):
             raise
-        words = (
-            str(problem).removeprefix(f"{fragility.__name__}: ").replace(NOT_GIVEN, _MOTION_MISSING)
-        )
+        words = str(problem).removeprefix("fragility: ").replace(NOT_GIVEN, _MOTION_MISSING)
         raise FileError(arguments.scene, words) from problem
     dataset = with_project(dataset, str(runs.attrs.get(PROJECT_ATTRIBUTE, "")))
     answer.add_result("Verdict", dataset.attrs["verdict"])
@@ -292,17 +291,14 @@ def _runs_of_study(arguments: argparse.Namespace) -> xr.Dataset:
 
 def _limit_state_line(state: str, row: xr.Dataset) -> str:
     """Write the median and dispersion of a limit state."""
-    median = row["median_intensity"]
-    status = row["fragility_status"]
+    median, status = row["median_intensity"], row["fragility_status"]
     words = flag_words(status.attrs)[int(status)].replace("_", " ")
     if bool(median.isnull()):
         return f"  {state}: no fit, {words}"
+    amount = amount_text(float(median), median.attrs)
     if int(status) != FragilityStatus.FITTED:
-        return f"  {state}: median about {amount_text(float(median), median.attrs)}, {words}"
-    dispersion = float(row["dispersion"])
-    return (
-        f"  {state}: median {amount_text(float(median), median.attrs)}, dispersion {dispersion:.3g}"
-    )
+        return f"  {state}: median about {amount}, {words}"
+    return f"  {state}: median {amount}, dispersion {float(row['dispersion']):.3g}"
 
 
 _MAP_KIND: Final = analysis_kind("a map of overturning", "impacts_before_overturning")
@@ -340,13 +336,13 @@ def _pulse(scene: SceneDescription, name: str | None) -> tuple[Any, str]:
     motion = scene.motion
     described = {} if motion is None else motion.to_dict()
     if name is None and set(_MAP_AXES) <= set(described):
-        values = {
-            key: value
+        words = [str(described["constructor"]).replace("_", " ")]
+        words += [
+            f"{key}: {value:g}" if isinstance(value, int | float) else f"{key}: {value}"
             for key, value in described.items()
             if key not in (*_MAP_AXES, *_CONSTRUCTOR_KEYS)
-        }
-        words = str(described["constructor"]).replace("_", " ")
-        return motion, ", ".join([words, *(f"{key}: {value:g}" for key, value in values.items())])
+        ]
+        return motion, ", ".join(words)
     name = name or _DEFAULT_PULSE
     return getattr(GroundMotion, name), name.replace("_", " ")
 
@@ -354,9 +350,8 @@ def _pulse(scene: SceneDescription, name: str | None) -> tuple[Any, str]:
 def _has_axes(name: str) -> bool:
     """Whether a constructor needs only an amplitude and a frequency."""
     taken = arguments_of(getattr(GroundMotion, name))
-    return set(_MAP_AXES) <= set(taken) and not any(
-        needed for argument, needed in taken.items() if argument not in _MAP_AXES
-    )
+    needed = {argument for argument, is_needed in taken.items() if is_needed}
+    return needed <= set(_MAP_AXES) <= set(taken)
 
 
 def _boundary_lines(dataset: xr.Dataset) -> list[str]:
@@ -365,9 +360,7 @@ def _boundary_lines(dataset: xr.Dataset) -> list[str]:
     lines = [f"  frequency [Hz]   boundaries of overturning [{unit}]"]
     for number, frequency in enumerate(dataset["frequency"].to_numpy()):
         part = dataset.isel(frequency=number)
-        ends = zip(
-            part["amplitude_above"].to_numpy(), part["impacts_above"].to_numpy(), strict=True
-        )
+        ends = zip(part["amplitude_above"].values, part["impacts_above"].values, strict=True)
         text = [f"{at:.4g} {_boundary_label(impacts)}" for at, impacts in ends if at == at]
         overturned = overturns(part).to_numpy()
         missing = int(np.isnan(overturned).sum())
@@ -395,7 +388,6 @@ def _finish_analysis(
     answer.add_numbers(dataset)
     outputs.write_result(dataset)
     if arguments.picture is not None:
-        save_figure(
-            getattr(plot, figure_function_name(dataset))(dataset), arguments.picture, outputs
-        )
+        draw = getattr(plot, figure_function_name(dataset))
+        save_figure(draw(dataset), arguments.picture, outputs)
     return 0 if is_finished(dataset if runs is None else runs) else 1

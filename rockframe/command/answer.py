@@ -120,10 +120,7 @@ class Answer:
 
 
 def format_table(values: "pd.DataFrame") -> str:
-    """Write a table of pandas in columns, with four digits; a wide one with heads of several lines.
-
-    What is still wider continues below, with the labels of the rows again.
-    """
+    """Write a table with four digits; of a wide one the last columns follow below the first."""
     options: Any = {"float_format": lambda value: f"{value:.4g}"}
     text = values.to_string(**options)
     if max(map(len, text.splitlines()), default=0) <= _MAX_WIDTH:

@@ -3,28 +3,23 @@
 from argparse import ArgumentTypeError
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from functools import partial
 from typing import Any, Final
 
 PICTURE_HELP: Final = "a picture, in the format of its ending: .png, .svg or .pdf"
 
 
-@dataclass(frozen=True)
 class CommandArgument:
-    """One argument of a command."""
+    """One argument of a command; its settings are those of ``add_argument`` of argparse."""
 
-    names: tuple[str, ...]  # as typed
-    settings: dict[str, Any]  # further arguments of :meth:`argparse.ArgumentParser.add_argument`
-    is_file: bool = False  # whether it names a file
+    def __init__(self, *names: str, is_file: bool = False, **settings: Any) -> None:
+        self.names, self.is_file, self.settings = names, is_file, settings
+        self.name = names[-1]  # its long name, as typed
+        self.attribute = self.name.removeprefix("--").replace("-", "_")  # once it is parsed
 
-    @property
-    def name(self) -> str:
-        """Its long name, as typed."""
-        return self.names[-1]
 
-    @property
-    def attribute(self) -> str:
-        """Name of its value among the arguments as they are parsed."""
-        return self.name.removeprefix("--").replace("-", "_")
+argument: Final = CommandArgument
+file_argument: Final = partial(CommandArgument, is_file=True)
 
 
 @dataclass(frozen=True)
@@ -37,16 +32,6 @@ class Command:
     description: str  # what it does, in its help
     examples: str  # lines to copy
     arguments: Sequence[CommandArgument]
-
-
-def file_argument(*names: str, **settings: Any) -> CommandArgument:
-    """Declare an argument that names a file."""
-    return CommandArgument(names, settings, is_file=True)
-
-
-def argument(*names: str, **settings: Any) -> CommandArgument:
-    """Declare any other argument."""
-    return CommandArgument(names, settings)
 
 
 def number_option(name: str, metavar: str, words: str) -> CommandArgument:

@@ -68,11 +68,8 @@ def _choices(argument: CommandArgument) -> str:
 
 def _choices_without_option(command: Command) -> str:
     """Return the words that may follow a command."""
-    return " ".join(
-        _choices(argument)
-        for argument in command.arguments
-        if _choices(argument) and not argument.name.startswith("-")
-    )
+    places = (argument for argument in command.arguments if not argument.name.startswith("-"))
+    return " ".join(filter(None, map(_choices, places)))
 
 
 def _bash() -> str:
@@ -83,19 +80,12 @@ def _bash() -> str:
         words = _choices_without_option(command)
         cases.append(f'            {command.name}) words="{words}" options="{names}" ;;')
         values += [
-            f'            "{command.name} {option.name}") words="{_choices(option)}" ;;'
+            f'            "{command.name} {option.name}") words="{choices}" ;;'
             for option in _options(command)
-            if _choices(option)
+            if (choices := _choices(option))
         ]
-    filled = {
-        "COMMANDS": " ".join(command.name for command in COMMANDS),
-        "CASES": "\n".join(cases),
-        "VALUES": "\n".join(values),
-    }
-    text = _BASH
-    for place, words in filled.items():
-        text = text.replace(f"@{place}@", words)
-    return text
+    text = _BASH.replace("@COMMANDS@", " ".join(command.name for command in COMMANDS))
+    return text.replace("@CASES@", "\n".join(cases)).replace("@VALUES@", "\n".join(values))
 
 
 def _zsh() -> str:

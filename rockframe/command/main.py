@@ -11,8 +11,9 @@ from collections.abc import Generator, Sequence
 from contextlib import contextmanager
 from importlib import import_module
 from types import FrameType
-from typing import TYPE_CHECKING, Any, Final
+from typing import Any, Final
 
+from rockframe.command.answer import Answer
 from rockframe.command.parser import (
     UsageError,
     build_parser,
@@ -21,9 +22,6 @@ from rockframe.command.parser import (
 )
 from rockframe.command.streams import StandardInput, print_message, replace_closed_streams
 from rockframe.errors import RockframeError, RockframeWarning, SolverError
-
-if TYPE_CHECKING:
-    from rockframe.command.answer import Answer
 
 UNFINISHED: Final = 1
 WRONG_INPUT: Final = 2
@@ -35,17 +33,21 @@ def main(values: Sequence[str] | None = None) -> int:
     typed = list(sys.argv[1:] if values is None else values)
     StandardInput.read_as = ""
     replace_closed_streams()
-    problem = unknown_word_message(typed)
-    if problem is not None:
-        program, _, words = problem.partition(": ")
-        print_message(program, words)
-        return _report_usage_error(typed, words)
     parser = build_parser()
     try:
+        unknown = unknown_word_message(typed)
+        if unknown is not None:
+            program, _, words = unknown.partition(": ")
+            print_message(program, words)
+            raise UsageError(words)
         unset = Namespace(quiet=False, verbose=False, json=False, debug=False)
         arguments = parser.parse_args(typed, unset)
     except UsageError as problem:
-        return _report_usage_error(typed, str(problem))
+        if "--json" in typed:
+            name = next((word for word in typed if not word.startswith("-")), "")
+            answer = Answer(name, quiet=True, verbose=False, as_json=True)
+            _print_answer(answer, WRONG_INPUT, str(problem), "rockframe")
+        return WRONG_INPUT
     except SystemExit:  # after help or version
         return 0
     if arguments.command is None:
@@ -61,21 +63,8 @@ def main(values: Sequence[str] | None = None) -> int:
             return INTERRUPTED
 
 
-def _report_usage_error(typed: Sequence[str], words: str) -> int:
-    """Report a wrong command line as JSON as well, where that is required."""
-    if "--json" in typed:
-        from rockframe.command.answer import Answer
-
-        name = next((word for word in typed if not word.startswith("-")), "")
-        answer = Answer(name, quiet=True, verbose=False, as_json=True)
-        _print_answer(answer, WRONG_INPUT, words, "rockframe")
-    return WRONG_INPUT
-
-
 def _run_command(arguments: Namespace, program: str, interrupts: list[int]) -> int:
     """Run a command, and print its results once all of its files are written."""
-    from rockframe.command.answer import Answer
-
     answer = Answer(
         arguments.command,
         quiet=arguments.quiet,
@@ -108,7 +97,7 @@ def _run_command(arguments: Namespace, program: str, interrupts: list[int]) -> i
     return code if written or error else WRONG_INPUT
 
 
-def _print_answer(answer: "Answer", code: int, error: str, program: str) -> bool:
+def _print_answer(answer: Answer, code: int, error: str, program: str) -> bool:
     """Print the results of a command; false where they could not be written."""
     text = answer.as_json_text(code, error) if answer.as_json else answer.as_text(error)
     try:
@@ -148,7 +137,7 @@ def _recorded_interrupts() -> Generator[list[int]]:
         signal.signal(signal.SIGINT, before)
 
 
-def _warning_printer(program: str, answer: "Answer") -> Any:
+def _warning_printer(program: str, answer: Answer) -> Any:
     def say(message: object, category: type[Warning], *_: object, **__: object) -> None:
         if not issubclass(category, RockframeWarning):
             return

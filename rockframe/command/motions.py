@@ -46,7 +46,10 @@ def execute_motion(arguments: argparse.Namespace, answer: Answer) -> int:
     values = table(measures)
     if len(motions) <= _MAX_PRINTED:
         for name, motion in motions.items():
-            answer.add_text("\n".join(_motion_lines(name, motion)))
+            answer.add_text(f"{name}\n  {motion_summary(motion)}")
+            for key, words in _METADATA_LABELS:
+                if motion.metadata.get(key):
+                    answer.add_text(f"  {words}: {motion.metadata[key]}")
             for head, value in values.loc[name].items():
                 answer.add_text(f"  {str(head).replace('_', ' '):<52} {value:.4g}")
     else:
@@ -63,16 +66,12 @@ def _picture_paths(picture: str | None, count: int) -> list[Path]:
     if picture is None:
         return []
     path = Path(picture)
+    if picture == STREAM and count > 1:
+        words = f"{count} pictures do not fit into it; name one motion, or a file ending in .png"
+        raise FileError(STREAM, words)
     if count == 1 or not path.name:
         return [path]
     return [path.with_stem(f"{path.stem}-{number}") for number in range(1, count + 1)]
-
-
-def _motion_lines(name: str, motion: GroundMotion) -> list[str]:
-    lines = [name, f"  {motion_summary(motion)}"]
-    metadata = motion.metadata
-    lines += [f"  {words}: {metadata[key]}" for key, words in _METADATA_LABELS if metadata.get(key)]
-    return lines
 
 
 _ENDINGS: Final = {"at2": ".AT2", "csv": ".csv", "nc": ".nc"}

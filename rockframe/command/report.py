@@ -1,7 +1,6 @@
 """``rockframe report``: a page on a run or a study."""
 
 import argparse
-import json
 from collections.abc import Mapping
 from pathlib import Path
 from typing import Any, Final
@@ -24,7 +23,7 @@ from rockframe.motion import GroundMotion
 from rockframe.reports import report
 from rockframe.reports.checks import CodeCheck
 from rockframe.reports.motions import available_motions
-from rockframe.reports.project import CHECKS, PROJECT_ATTRIBUTE
+from rockframe.reports.project import CHECKS, project_of_result
 from rockframe.simulation.system import System
 from rockframe.studies import case, open_study
 from rockframe.studies.sweeps.case import NOT_GIVEN
@@ -89,7 +88,7 @@ def _code_checks(
 ) -> list[CodeCheck]:
     """Check the scene of a result by codes, under its motions or by a spectrum."""
     # checks that were typed replace those in the file of the scene
-    listed = json.loads(str(dataset.attrs.get(PROJECT_ATTRIBUTE, "{}"))).get(CHECKS, ())
+    listed = project_of_result(None, dataset, _CHECK_OPTION).checks
     required = bool(typed)  # others are left out without motions, which the report mentions
     typed = typed or [parse_check(text, CHECKS) for text in listed]
     if not typed:

@@ -24,6 +24,7 @@ from rockframe.command.streams import (
     TerminalProgressBar,
     open_input,
 )
+from rockframe.command.typed_calls import parse_value
 from rockframe.constants import STANDARD_GRAVITY
 from rockframe.errors import ComponentError, FileError, RecordError, SolverError, short_repr
 from rockframe.motion import GroundMotion
@@ -385,10 +386,7 @@ def part_names(system: System) -> str:
 def _read_accuracy(text: str, command: str) -> str | float:
     if text == SCREEN and command in _SCREENING_COMMANDS:
         return text
-    try:
-        value: str | float = float(text)
-    except ValueError:
-        value = text
+    value = parse_value(text)
     try:
         accuracy_of(value, owner="--accuracy")
     except SolverError as problem:

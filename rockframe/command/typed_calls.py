@@ -62,11 +62,12 @@ def parse_call(
     unknown = [key for key in value if key not in known]
     missing = [key for key, needed in known.items() if needed and key not in value]
     if unknown or missing:
-        message = f"has no {unknown[0]!r}{did_you_mean(unknown[0], known)}" if unknown else ""
-        message = message or f"needs {missing[0]}=..."
-        msg = f"{option}: {name} {message}; it takes {', '.join(known)}"
+        fault = f"needs {missing[0]}=..." if missing else ""
+        if unknown:
+            fault = f"has no {unknown[0]!r}{did_you_mean(unknown[0], known)}"
+        msg = f"{option}: {name} {fault}; it takes {', '.join(known)}"
         raise ComponentError(msg)
-    return function, {key: _parse_value(text) for key, text in value.items()}
+    return function, {key: parse_value(text) for key, text in value.items()}
 
 
 def parse_check(text: str, option: str) -> list[str]:
@@ -106,7 +107,7 @@ def _read_spectrum(path: str) -> tuple[tuple[Any, str], tuple[Any, str]]:
     return columns["period"], columns["acceleration"]
 
 
-def _parse_value(text: str) -> float | str:
+def parse_value(text: str) -> float | str:
     """Read a pure number; a quantity with a unit, or a word, remains text."""
     try:
         return float(text)

@@ -6,7 +6,7 @@ import xml.etree.ElementTree as Tree
 from collections.abc import Mapping
 from os import PathLike
 from pathlib import Path
-from typing import Any, Final
+from typing import Any, Final, cast
 
 import pandas as pd
 import xarray as xr
@@ -230,8 +230,13 @@ def to_openquake(
     if not fragilities:
         msg = f"{_OPENQUAKE}: found no fragilities; expected one at least"
         raise ComponentError(msg)
-    for word in (name, *fragilities):
-        _check_identifier(word)
+    for word in cast("tuple[object, ...]", (name, *fragilities)):
+        if not isinstance(word, str) or not _IDENTIFIER.fullmatch(word):
+            msg = (
+                f"{_OPENQUAKE}: names have up to 100 letters, digits, '-' and '_', got "
+                f"{short_repr(word)}"
+            )
+            raise ComponentError(msg)
     fitted = {
         taxonomy: _fitted_limit_states(fragility, _OPENQUAKE_MEASURES, owner=_OPENQUAKE)
         for taxonomy, fragility in fragilities.items()
@@ -325,15 +330,6 @@ def _period(dataset: xr.Dataset, owner: str) -> float:
         msg = f"{owner}: found a spectral measure without the attribute {PERIOD_ATTRIBUTE!r}"
         raise SchemaError(msg)
     return float(dataset.attrs[PERIOD_ATTRIBUTE])
-
-
-def _check_identifier(value: object) -> None:
-    if not isinstance(value, str) or not _IDENTIFIER.fullmatch(value):
-        msg = (
-            f"{_OPENQUAKE}: names have up to 100 letters, digits, '-' and '_', got "
-            f"{short_repr(value)}"
-        )
-        raise ComponentError(msg)
 
 
 def _state_name(state: str) -> str:

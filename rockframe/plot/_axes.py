@@ -104,10 +104,7 @@ def escape_mathtext(text: str) -> str:
 
 
 def as_label(name: str, max_length: int = _MAX_LABEL_LENGTH) -> str:
-    """Return a name without the meaning of ``$`` and ``_`` in matplotlib, in legends too.
-
-    Long names are shortened in the middle, to leave room for the data.
-    """
+    """Return a name as matplotlib writes it letter by letter; a long one without its middle."""
     if len(name) > max_length:
         name = f"{name[: max_length - max_length // 3 - 3]}...{name[-(max_length // 3) :]}"
     # legends omit names that begin with an underscore
@@ -207,13 +204,6 @@ def label_log_ticks(axes: "Axes", which: str = "xy") -> None:
             axis.set_minor_locator(NullLocator())
 
 
-def colour_steps(along: xr.DataArray) -> Any:
-    """Return colours from dark to light, one for each label."""
-    from matplotlib import colormaps
-
-    return colormaps["viridis"](np.linspace(0.1, 0.85, along.size))
-
-
 METRES: Final = DisplayUnit(str(LENGTH.unit), 1.0)
 
 
@@ -233,10 +223,6 @@ def set_length_unit(axes: "Axes", length: DisplayUnit) -> None:
             axis.set_major_locator(Places("auto", steps=[1, 2, 2.5, 5, 10]))
             axis.set_major_formatter(FuncFormatter(lambda place, _: f"{place / length.size:.6g}"))
     axes.set(xlabel=f"[{length.words}]", ylabel=f"[{length.words}]")
-
-
-RELATIVE: Final = "relative"
-"""Word for values that are divided by a scale of the body."""
 
 
 @dataclass(frozen=True)
@@ -261,7 +247,7 @@ class FigureUnits:
         (unit,) = items.values()
         if unit is None and self.reader.chosen_unit(measure) is None:
             return None
-        is_relative = isinstance(unit, str) and unit == RELATIVE
+        is_relative = isinstance(unit, str) and unit == "relative"
         return None if is_relative else self.axis_unit(measure, "", **items)
 
     def rotation_unit(self, rotation: str | None) -> str | None:

@@ -1,6 +1,5 @@
 """The datasets that figures are drawn from, and messages on anything else."""
 
-import json
 import warnings
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -12,6 +11,7 @@ from typing import Any, Final, TypeVar, cast
 import numpy as np
 import xarray as xr
 
+from rockframe.arguments import json_attribute
 from rockframe.errors import RockframeWarning, SchemaError, first_along
 from rockframe.motion import GroundMotion
 from rockframe.shared_arguments import (
@@ -185,10 +185,7 @@ def figure_function_name(dataset: xr.Dataset) -> str:
 
 
 def checked_run(value: object, function: str) -> xr.Dataset:
-    """Return the result of one run with histories up to its end; raise on anything else.
-
-    The histories of a case of a sweep are padded with NaN to the length of the longest case.
-    """
+    """Return the result of one run with histories up to its end; raise on anything else."""
     owner = f"rf.plot.{function}"
     value = in_units_of_schema(_checked_kind(value, function, RUN), owner=owner)
     value = value.assign_coords(
@@ -201,6 +198,7 @@ def checked_run(value: object, function: str) -> xr.Dataset:
     if more:
         way = f"pick one, for example with {first_along('dataset', more[0])}"
         raise _mismatch_error(function, f"several runs over {', '.join(more)}; {way}")
+    # histories of a case of a sweep have NaN up to the length of the longest case
     samples = np.flatnonzero(~np.isnan(value["relative_rotation"].to_numpy()))
     if not len(samples):
         raise _mismatch_error(function, "a case without a result")
@@ -219,13 +217,10 @@ def figure_data(value: object, function: str, units: UnitsLike = None) -> xr.Dat
 def _checked_kind(value: object, function: str, kind: DatasetKind) -> xr.Dataset:
     if not isinstance(value, xr.Dataset) or not _has_variables(value, kind.identifying):
         raise SchemaError(mismatch_message(function, value))
-    missing = [
-        repr(name) for name in (*kind.identifying, *kind.required) if name not in value.variables
-    ]
+    needed = (*kind.identifying, *kind.required)
+    missing = ", ".join(repr(name) for name in needed if name not in value.variables)
     if missing:
-        raise _mismatch_error(
-            function, f"one that lacks {', '.join(missing)}; give it the whole dataset"
-        )
+        raise _mismatch_error(function, f"one that lacks {missing}; give it the whole dataset")
     return value
 
 
@@ -252,15 +247,12 @@ def system_of_run(run: xr.Dataset, function: str) -> System:
         warnings.simplefilter("ignore", RockframeWarning)  # issued already by the run
         if SWEEP_ATTRIBUTE in run.attrs:
             return system_of_case(run, owner=f"rf.plot.{function}")
-        return System.from_dict(json.loads(str(text)))
+        return System.from_dict(json_attribute(run, "system_json", owner=f"rf.plot.{function}"))
 
 
 def mismatch_message(function: str, value: object) -> str:
     """Write what a function draws, what was given, and how the latter can be drawn."""
-    what, way = _describe_value(function, value)
-    return f"rf.plot.{function} needs {_required_data(function)}, got {what}" + (
-        f"; {way}" if way else ""
-    )
+    return str(_mismatch_error(function, "; ".join(filter(None, _describe_value(function, value)))))
 
 
 def _describe_value(function: str, value: object) -> tuple[str, str]:
@@ -316,10 +308,8 @@ def _has_variables(dataset: xr.Dataset, names: tuple[str, ...]) -> bool:
 
 
 def overturning_angles(dataset: xr.Dataset) -> tuple[float, float]:
-    """Return the overturning angles to the left and to the right [rad].
-
-    In a sweep those of both sides are NaN for a case whose body is symmetric.
-    """
+    """Return the overturning angles to the left and to the right [rad]."""
+    # in a sweep those of both sides are NaN for a case whose body is symmetric
     least = dataset["overturning_angle"]
     left, right = (dataset.get(f"{side}_overturning_angle", least) for side in ("left", "right"))
     return float(left.fillna(least)), float(right.fillna(least))

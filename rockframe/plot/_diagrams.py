@@ -98,12 +98,11 @@ def phase(
     if 0.0 < reach < _ZOOM_RATIO * end:  # otherwise the data would be almost a vertical line
         sheet.axes.set_xlim(-1.1 * reach, 1.1 * reach)
     _draw_zero_lines(sheet.axes)
-    if unit is None:
-        sheet.axes.set(xlabel=r"rotation $\alpha/\theta$ [-]")
-        sheet.axes.set(ylabel=axis_label(r"rate $\dot\alpha/\theta$", "s^-1"))
-    else:
-        sheet.axes.set(xlabel=axis_label("rotation", unit.words))
-        sheet.axes.set(ylabel=axis_label("rate of the rotation", f"{unit.words} s^-1"))
+    words = r"rotation $\alpha/\theta$ [-]", axis_label(r"rate $\dot\alpha/\theta$", "s^-1")
+    if unit is not None:
+        rate = axis_label("rate of the rotation", f"{unit.words} s^-1")
+        words = axis_label("rotation", unit.words), rate
+    sheet.axes.set(xlabel=words[0], ylabel=words[1])
     if len(data) > 1:
         add_legend(sheet.axes)
     sheet.set_title(runs_title(data, axis_units.reader), title)

@@ -154,11 +154,9 @@ def _draw_peaks(
         curve, along = dataset.isel(motion=number), intensity.isel(motion=number).to_numpy()
         line = _peaks_with_flips(along, curve["peak_relative_rotation"].to_numpy(), places)
         colour = GREY if several else line_colour(number)
-        words = (
-            ("motions" if number == 0 else None)
-            if several
-            else as_label(str(curve["motion"].item()))
-        )
+        words = "motions" if number == 0 else None
+        if not several:
+            words = as_label(str(curve["motion"].item()))
         axes.plot(line[1], line[0], color=colour, lw=0.7, label=words)
         for some, face in ((places[:1], colour), (places[1:], "none")):
             axes.plot(np.full(len(some), PEAK_CAP), some, "o", mfc=face, color=colour, ms=3)
@@ -265,21 +263,15 @@ def fractile_curves(
         axes.plot(of_response, up, color=colour, lw=1.6, label=f"{words} of responses")
         reached = fractile["intensity_fractile"].where(np.isfinite)
         axes.plot(levels, reached, color=paired, lw=1.4, ls="--", label=f"{words} of intensities")
-    words = str(data.attrs["response"])
+    # nothing is drawn above the intensity at which the last motion overturns
+    last = up[np.isfinite(runs).any(axis=0)].max(initial=up[0])
     axes.set(
-        xlabel=variable_label(data["response_level"].rename(words)),
+        xlabel=variable_label(data["response_level"].rename(str(data.attrs["response"]))),
         ylabel=intensity_label(data[name], data),
         xlim=(0.0, right),
-        # nothing is drawn above the intensity at which the last motion overturns
-        ylim=(
-            0.0,
-            min(up[-1], _AXIS_MARGIN * up[np.isfinite(runs).any(axis=0)].max(initial=up[0])),
-        ),
+        ylim=(0.0, min(up[-1], _AXIS_MARGIN * last)),
     )
-    grid(axes)
-    sheet.add_common_legend()
-    sheet.set_title(with_superscripts(str(data.attrs["verdict"])), title)
-    return axes
+    return sheet.finish(with_superscripts(str(data.attrs["verdict"])), title)
 
 
 @draws(
@@ -343,10 +335,7 @@ def cloud(
         xlabel=intensity_label(data[name], data), ylabel=variable_label(response_name),
     )  # fmt: skip
     label_log_ticks(axes)
-    grid(axes)
-    sheet.add_common_legend()
-    sheet.set_title(with_superscripts(str(data.attrs["verdict"])), title)
-    return axes
+    return sheet.finish(with_superscripts(str(data.attrs["verdict"])), title)
 
 
 @draws(
@@ -399,7 +388,4 @@ def annual_rate(
     )  # fmt: skip
     axes.set_ylim(bottom=0.0)
     label_log_ticks(axes)
-    grid(axes)
-    sheet.add_common_legend()
-    sheet.set_title(with_superscripts(str(data.attrs["verdict"])), title)
-    return axes
+    return sheet.finish(with_superscripts(str(data.attrs["verdict"])), title)

@@ -1,6 +1,6 @@
 """Empirical distributions, sensitivities of overturning, and fragilities."""
 
-from typing import Final
+from typing import Any, Final
 
 import numpy as np
 import xarray as xr
@@ -53,17 +53,14 @@ def ensemble(
         ("simultaneous", 0.12, "bounds everywhere at once"),
         ("cumulative_probability", 0.25, "bounds at each value"),
     ):
-        low, high = (data[f"{name}_{end}_bound"].to_numpy() for end in ("lower", "upper"))
+        low, high = _bounds(data, name)
         label = words if np.isfinite(low).any() else None
         axes.fill_between(
             values, low, high, step="post", color=COLOURS[0], alpha=alpha, lw=0.0, label=label
         )
     axes.step(values, data["cumulative_probability"], where="post", color=COLOURS[0])
     axes.set(xlabel=variable_label(values), ylabel="share of the ensemble [-]", ylim=(0.0, 1.02))
-    grid(axes)
-    sheet.add_common_legend()
-    sheet.set_title(with_superscripts(str(data.attrs["verdict"])), title)
-    return axes
+    return sheet.finish(with_superscripts(str(data.attrs["verdict"])), title)
 
 
 @draws(
@@ -104,15 +101,16 @@ def probability(
     first = data[str(data["parameter"].to_numpy()[0])]
     verdict = overturns(data).to_numpy()
     decided = ~np.isnan(verdict)
+    values, verdict = first.to_numpy()[decided], verdict[decided]
     if first.dtype.kind == "f":
-        cuts = np.quantile(first.to_numpy()[decided], np.linspace(0.0, 1.0, 13))
-        place = np.clip(np.searchsorted(cuts, first.to_numpy()[decided], side="right") - 1, 0, 11)
-        shares = [verdict[decided][place == k].mean() for k in range(12)]
-        right.stairs(shares, cuts, fill=True, color=COLOURS[1], alpha=0.6)
+        groups = min(_MAX_GROUPS, values.size)
+        cuts = np.quantile(values, np.linspace(0.0, 1.0, groups + 1))
+        place = np.clip(np.searchsorted(cuts, values, side="right") - 1, 0, groups - 1)
+        right.stairs(_shares(verdict, place, groups), cuts, fill=True, color=COLOURS[1], alpha=0.6)
         right.set(xlabel=variable_label(first))
     else:
-        labels, place = np.unique(first.to_numpy()[decided].astype(str), return_inverse=True)
-        shares = [verdict[decided][place == k].mean() for k in range(len(labels))]
+        labels, place = np.unique(values.astype(str), return_inverse=True)
+        shares = _shares(verdict, place, len(labels))
         right.bar(range(len(labels)), shares, color=COLOURS[1], alpha=0.6)
         right.set(xlabel="motion")
         if len(labels) <= _MAX_NAMED:
@@ -124,6 +122,18 @@ def probability(
     sentence = figure_units(units, "probability").reader.convert_text(cases_verdict(dataset))
     sheet.set_title(sentence, title)
     return sheet.panels
+
+
+def _bounds(dataset: xr.Dataset, name: str) -> Any:
+    """Return the lower and the upper bound of a variable."""
+    return np.stack([dataset[f"{name}_{end}_bound"].to_numpy() for end in ("lower", "upper")])
+
+
+def _shares(verdicts: Any, groups: Any, count: int) -> Any:
+    """Return the shares that overturned in groups, NaN in one that equal values leave empty."""
+    sizes = np.bincount(groups, minlength=count)
+    overturned = np.bincount(groups, weights=verdicts, minlength=count)
+    return np.divide(overturned, sizes, out=np.full(count, np.nan), where=sizes > 0)
 
 
 @draws(
@@ -174,9 +184,9 @@ def subset_simulation(
     largest = float(demand[finite].max(initial=0.0)) or 1.0
     plotted_at = limit if np.isfinite(limit) else 1.08 * largest
     probability = float(data[_PROBABILITY])
-    bounds = [float(data[f"{_PROBABILITY}_{end}_bound"]) for end in ("lower", "upper")]
+    bounds = _bounds(data, _PROBABILITY)
     if probability > 0.0:
-        errors = np.abs(np.array(bounds) - probability)[:, None]
+        errors = np.abs(bounds - probability)[:, None]
         axes.errorbar(
             plotted_at, probability, yerr=errors, fmt="D", ms=5.0, capsize=3.0, color="0.1"
         )
@@ -186,11 +196,11 @@ def subset_simulation(
         yscale="log", xlabel="response over its limit [-]", xlim=(0.0, None),
         ylabel="probability of reaching it [-]",
     )  # fmt: skip
-    grid(axes)
-    sheet.set_title(with_superscripts(str(data.attrs["verdict"])), title)
-    return axes
+    return sheet.finish(with_superscripts(str(data.attrs["verdict"])), title)
 
 
+_MAX_GROUPS: Final = 12
+"""Groups of cases by the value of a parameter."""
 _MAX_NAMED: Final = 30
 """Motions whose names stand below their bars."""
 _PROBABILITY: Final = "exceedance_probability"
@@ -301,10 +311,9 @@ def _draw_curves(axes: Axes, named: list[tuple[str, xr.Dataset]], measure: str) 
         colour, dashes = line_colour(number), line_style(number // len(COLOURS))
         along = curve[measure].to_numpy()
         if int(curve["fragility_status"]) in _FITTED_STATUSES:
-            low, high = (
-                curve[f"{_PROBABILITY}_{end}_bound"].to_numpy() for end in ("lower", "upper")
+            axes.fill_between(
+                along, *_bounds(curve, _PROBABILITY), color=colour, alpha=0.15, linewidth=0.0
             )
-            axes.fill_between(along, low, high, color=colour, alpha=0.15, linewidth=0.0)
             separated = int(curve["fragility_status"]) == FragilityStatus.SEPARATED
             words = f"{name}: separated" if separated else name
             axes.plot(
@@ -313,8 +322,7 @@ def _draw_curves(axes: Axes, named: list[tuple[str, xr.Dataset]], measure: str) 
         else:
             axes.plot([], [], color=colour, label=f"{name}: no fit")
         fraction = curve["stripe_fraction"].to_numpy()
-        bounds = [curve[f"stripe_fraction_{end}_bound"].to_numpy() for end in ("lower", "upper")]
-        errors = np.abs(np.stack(bounds) - fraction)
+        errors = np.abs(_bounds(curve, "stripe_fraction") - fraction)
         errors[:, curve["stripe_trials"].to_numpy() < 2] = np.nan  # no bounds from a single trial
         # side by side, since limit states are counted at the same intensities
         intensity = curve["stripe_intensity"].to_numpy() * 1.012 ** (

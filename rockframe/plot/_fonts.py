@@ -41,10 +41,7 @@ def warn_of_letters_once(drawing: Callable[_P, _T]) -> Callable[_P, _T]:
 
 
 def add_fallback_fonts(artists: "Iterable[Axes | Figure | SubFigure]") -> None:
-    """Add installed fonts to texts, for the letters that their own fonts do not have.
-
-    Letters that no installed font has are written as question marks, with one warning.
-    """
+    """Add fonts to texts for letters that theirs lack; those of no font become ``?``."""
     from matplotlib.font_manager import fontManager
 
     unsupported = dict[str, None]()

@@ -29,7 +29,7 @@ from rockframe.plot._axes import (
 )
 from rockframe.plot._checks import draws, mismatch_message
 from rockframe.plot._panels import Axes, AxesLike, Panels, make_sheet
-from rockframe.plot._runs import Window, read_window
+from rockframe.plot._runs import Window, read_window, within_window
 from rockframe.units import ACCELERATION, LENGTH, VELOCITY
 from rockframe.units.display import UnitsLike
 
@@ -131,12 +131,15 @@ def motion(
         axis_units.axis_unit(VELOCITY, velocity=velocity),
         axis_units.axis_unit(LENGTH, displacement=displacement),
     )
-    drawn = slice(*limits)
-    histories = [velocity_and_displacement(curve.motion).sel(time=drawn) for curve in data]
+
+    def history_of(curve: LabelledMotion, component: str = "horizontal") -> xr.Dataset:
+        history = velocity_and_displacement(curve.motion, component=component)
+        return within_window(history, limits, "motion", "motion")
+
+    histories = [history_of(curve) for curve in data]
     vertical_history = None
     if len(data) == 1 and data[0].motion.si.vertical is not None:
-        vertical_history = velocity_and_displacement(data[0].motion, component="vertical")
-        vertical_history = vertical_history.sel(time=drawn)
+        vertical_history = history_of(data[0], "vertical")
     sheet = make_sheet(ax, "motion", _QUANTITIES, (7.2, 5.4), nrows=3, sharex=True)
     colours = (text_colour(), BLUE, GREEN)
     for axes, name, unit, colour in zip(sheet.panels, _QUANTITIES, row_units, colours, strict=True):

@@ -2,6 +2,7 @@
 
 from typing import Any, Final
 
+import numpy as np
 import xarray as xr
 
 from rockframe.plot._axes import (
@@ -12,7 +13,6 @@ from rockframe.plot._axes import (
     PURPLE,
     SKY,
     VERMILLION,
-    colour_steps,
     figure_units,
     grid,
     intensity_label,
@@ -172,14 +172,17 @@ def _impact_label(count: int, counted: int) -> str:
 
 def _draw_by_slenderness(ax: AxesLike, function: str, values: xr.DataArray, **style: Any) -> Sheet:
     """Draw a line for each motion over the size of the block, in a panel for each slenderness."""
+    from matplotlib import colormaps
+
     names = [f"H/B = {float(value):.3g}" for value in values["slenderness"]]
     sheet = make_sheet(
         ax, function, names, (1.2 + 3.2 * len(names), 3.9), ncols=len(names), sharey=True
     )
+    motions = unique_labels(map(str, values["motion"].to_numpy()))
+    colours = colormaps["viridis"](np.linspace(0.1, 0.85, len(motions)))
     for place, axes in enumerate(sheet.panels):
-        motions = unique_labels(map(str, values["motion"].to_numpy()))
-        for number, colour in enumerate(colour_steps(values["motion"])):
-            curve, label = values.isel(slenderness=place, motion=number), motions[number]
+        for number, (label, colour) in enumerate(zip(motions, colours, strict=True)):
+            curve = values.isel(slenderness=place, motion=number)
             axes.plot(curve["rocking_period"], curve, color=colour, lw=1.0, label=label)
         axes.set(xscale="log", xlabel=r"$2\pi/p$ [s]", title=names[place], **style)
         grid(axes)

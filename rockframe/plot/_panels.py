@@ -1,7 +1,7 @@
 """The panels of figures: those of a new pyplot figure, or given ones."""
 
 import re
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from textwrap import wrap
 from typing import TYPE_CHECKING, Any, Final, TypeAlias, cast
@@ -10,7 +10,7 @@ import numpy as np
 
 from rockframe.arguments import checked_text
 from rockframe.errors import ComponentError, did_you_mean, short_repr
-from rockframe.plot._axes import add_legend, escape_mathtext
+from rockframe.plot._axes import add_legend, escape_mathtext, grid
 from rockframe.plot._fonts import add_fallback_fonts
 from rockframe.suggestions import suggests_names
 
@@ -125,10 +125,7 @@ class Sheet:
     def add_legend(
         self, handles: Sequence[Any], labels: Sequence[str], *, columns: int = 12, **style: Any
     ) -> None:
-        """Write a legend below a new figure, or above the data of the last given panel.
-
-        It has as many columns as there is room for, at most `columns`.
-        """
+        """Write a legend below a new figure, as wide as it, or above the data of the last panel."""
         if self.own_figure is None or not labels:
             add_legend(self.panels[-1], (handles, labels))
             return
@@ -136,6 +133,14 @@ class Sheet:
         fitting = int(width // (_HANDLE_LETTERS + max(map(len, labels))))
         style |= {"ncols": max(1, min(len(labels), columns, fitting))}
         self.own_figure.legend(handles, labels, loc="outside lower center", frameon=False, **style)
+
+    def finish(self, default: str, title: str | None) -> "Axes":
+        """Draw the grid, the legend of all panels and the title; return the first panel."""
+        for axes in self.panels:
+            grid(axes)
+        self.add_common_legend()
+        self.set_title(default, title)
+        return self.axes
 
     def add_common_legend(self) -> None:
         """Write one legend of the labels of all panels."""
@@ -164,16 +169,13 @@ def make_sheet(
     """
     from matplotlib.figure import FigureBase
 
-    if len(names) > 1 and isinstance(ax, FigureBase):
-        return _new_sheet(ax, layout)
-    if ax is not None:
+    figure: Any = ax
+    if ax is None:
+        from matplotlib import pyplot
+
+        figure = pyplot.figure(figsize=size, layout="constrained")
+    elif len(names) == 1 or not isinstance(ax, FigureBase):
         return Sheet(Panels(_checked_axes(ax, function, names, choice=choice)), None)
-    from matplotlib import pyplot
-
-    return _new_sheet(pyplot.figure(figsize=size, layout="constrained"), layout)
-
-
-def _new_sheet(figure: Any, layout: Mapping[str, Any]) -> Sheet:
     if "mosaic" in layout:
         return Sheet(Panels(figure.subplot_mosaic(**layout).values()), figure)
     return Sheet(Panels(np.ravel(figure.subplots(**layout))), figure)

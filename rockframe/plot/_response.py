@@ -290,13 +290,13 @@ def _read_panels(panels: object, runs: list[Run]) -> tuple[str, ...]:
     histories = list(dict.fromkeys(name for run in runs for name in history_names(run.dataset)))
     known_names = [*_HEIGHTS, *histories]
     unknown = [panel for panel in chosen if not isinstance(panel, str) or panel not in known_names]
-    if not chosen or unknown:
+    if unknown or not chosen or len(set(chosen)) < len(chosen):
         choices = ", ".join(repr(name) for name in _HEIGHTS)
         wrong = unknown[0] if unknown else panels
-        proposal = did_you_mean(wrong, [*_HEIGHTS, *histories]) or "."
+        proposal = did_you_mean(wrong, known_names) or "."
         msg = (
-            f"rf.plot.response: panels are some of {choices}, and histories of the runs, got "
-            f"{short_repr(wrong)}{proposal} They hold {', '.join(map(repr, histories))}"
+            f"rf.plot.response: panels are some of {choices}, and histories of the runs, each "
+            f"once, got {short_repr(wrong)}{proposal} They hold {', '.join(map(repr, histories))}"
         )
         raise ComponentError(msg)
     return tuple(map(str, chosen))

@@ -1,13 +1,13 @@
 """The runs of a figure: one, or several to compare, and the window of time."""
 
-import json
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from typing import Any, TypeAlias, cast
+from typing import Any, TypeAlias
 
 import numpy as np
 import xarray as xr
 
+from rockframe.arguments import json_attribute
 from rockframe.errors import ComponentError, short_repr
 from rockframe.plot._axes import line_colour, line_style, unique_labels
 from rockframe.plot._checks import checked_run
@@ -45,12 +45,11 @@ class Run:
 def read_runs(value: object, function: str, window: Window) -> list[Run]:
     """Read one or several runs, and cut out the window that is drawn."""
     limits = read_window(window, function)
-    labelled = _labelled_runs(value)
-    labels: list[Any] = [None] if labelled is None else unique_labels(labelled)
-    values: list[Any] = [value] if labelled is None else [*labelled.values()]
+    names, values = _labelled_runs(value)
+    labels: list[Any] = [None] if names is None else unique_labels(names)
     runs = [checked_run(run, function) for run in values]
     return [
-        Run(_within_window(run, limits, function), label, line_colour(number), line_style(number))
+        Run(within_window(run, limits, function), label, line_colour(number), line_style(number))
         for number, (label, run) in enumerate(zip(labels, runs, strict=True))
     ]
 
@@ -104,7 +103,7 @@ def verdict_of_case(run: xr.Dataset, units: DisplayUnits) -> str:
 
 def _case_label(run: xr.Dataset) -> str:
     """Name the case of a sweep by its coordinates."""
-    axes = [str(axis["name"]) for axis in json.loads(str(run.attrs["axes_json"]))]
+    axes = [str(axis["name"]) for axis in json_attribute(run, "axes_json", owner="rf.plot")]
     names = [name for name in ("motion", *axes) if name in run.coords and not run[name].dims]
     labels = [(name.replace("_", " "), run[name].item(), run[name].attrs) for name in names]
     words = [
@@ -114,16 +113,18 @@ def _case_label(run: xr.Dataset) -> str:
     return ", ".join(words) or "case of a sweep"
 
 
-def _labelled_runs(value: object) -> dict[str, Any] | None:
-    """Return several runs by their labels; None for a single run."""
-    if isinstance(value, Mapping) and not isinstance(value, xr.Dataset):
-        labels = {str(key): run for key, run in value.items()}
-        return labels if labels and _are_datasets(list(labels.values())) else None
-    if not isinstance(value, list | tuple) or not value:
-        return None
-    runs = list(cast("Sequence[Any]", value))
-    if not _are_datasets(runs):
-        return None
+def _labelled_runs(value: Any) -> tuple[list[str] | None, list[Any]]:
+    """Return the labels of several runs, and the runs; a single one has no label."""
+    keyed = isinstance(value, Mapping) and not isinstance(value, xr.Dataset)
+    runs: list[Any] = []
+    if keyed:
+        runs = [*value.values()]
+    elif isinstance(value, list | tuple):
+        runs = [*value]
+    if not runs or not all(isinstance(run, xr.Dataset) for run in runs):
+        return None, [value]
+    if keyed:
+        return [str(key) for key in value], runs
     cases = [_case_label(run) if "axes_json" in run.attrs else "" for run in runs]
     attributes = ("motion", "model", "accuracy")
     for names in [
@@ -131,27 +132,25 @@ def _labelled_runs(value: object) -> dict[str, Any] | None:
         *([str(run.attrs.get(attribute, "")) for run in runs] for attribute in attributes),
     ]:
         if len(set(names)) == len(runs):
-            return dict(zip(names, runs, strict=True))
-    return {f"run {number}": run for number, run in enumerate(runs, start=1)}
+            return names, runs
+    return [f"run {number}" for number, _ in enumerate(runs, start=1)], runs
 
 
-def _are_datasets(values: list[Any]) -> bool:
-    return all(isinstance(value, xr.Dataset) for value in values)
-
-
-def _within_window(run: xr.Dataset, limits: tuple[float, float], function: str) -> xr.Dataset:
+def within_window(
+    histories: xr.Dataset, limits: tuple[float, float], function: str, of: str = "run"
+) -> xr.Dataset:
     """Cut out a window of time, with the events in it."""
     if not np.isfinite(limits).any():
-        return run
-    time = run["time"].to_numpy()
+        return histories
+    time = histories["time"].to_numpy()
     inside = np.flatnonzero((time >= limits[0]) & (time <= limits[1]))
     if inside.size < 2:
         msg = (
-            f"rf.plot.{function}: the window holds {inside.size} of the run's samples, which go "
+            f"rf.plot.{function}: the window holds {inside.size} of the {of}'s samples, which go "
             f"from {time[0]:.6g} s to {time[-1]:.6g} s; expected two at least"
         )
         raise ComponentError(msg)
-    part = run.isel(time=slice(int(inside[0]), int(inside[-1]) + 1))
+    part = histories.isel(time=slice(int(inside[0]), int(inside[-1]) + 1))
     if "event_time" in part:
         times = part["event_time"].to_numpy()
         part = part.isel(event=np.flatnonzero((times >= limits[0]) & (times <= limits[1])))

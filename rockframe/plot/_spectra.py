@@ -8,6 +8,7 @@ import numpy as np
 import xarray as xr
 
 from rockframe.arguments import checked_bool, checked_choice
+from rockframe.errors import ComponentError, short_repr
 from rockframe.measures import fourier_spectrum, response_spectrum, velocity_and_displacement
 from rockframe.motion.quantities import ArrayLike
 from rockframe.plot._axes import (
@@ -30,7 +31,7 @@ from rockframe.plot._axes import (
 from rockframe.plot._checks import draws, figure_data
 from rockframe.plot._motion import LabelledMotion, MotionsLike, labelled_motions, motions_title
 from rockframe.plot._panels import Axes, AxesLike, Panels, make_sheet, make_single_panel
-from rockframe.plot._runs import Window, read_window
+from rockframe.plot._runs import Window, read_window, within_window
 from rockframe.suites import TargetSpectrum
 from rockframe.suites.target import check_target
 from rockframe.units import ACCELERATION, VELOCITY, QuantityLike, RatioLike
@@ -93,31 +94,48 @@ def spectra(
     amplitude = axis_units.axis_unit(VELOCITY)
     results = [
         (
-            curve,
-            velocity_and_displacement(curve.motion, component=component),
+            within_window(
+                velocity_and_displacement(curve.motion, component=component),
+                limits, "spectra", "motion",
+            ),
             response_spectrum(curve.motion, periods, damping_ratios, component=component),
             fourier_spectrum(curve.motion, resolution=_RESOLUTION, component=component),
         )
         for curve in data
-    ]
+    ]  # fmt: skip
     sheet = make_sheet(
         ax, "spectra", _PANELS, (7.2, 5.4),
         mosaic=[["history", "history"], ["response", "fourier"]], height_ratios=[1.0, 1.7],
     )  # fmt: skip
-    for curve, history, response, fourier in results:
-        name = f"{_VARIABLE_PREFIX[str(component)]}ground_acceleration"
+    history, response, fourier = sheet.panels
+    highest = 0.0
+    for curve, (part, spectrum, transform) in zip(data, results, strict=True):
         colour = text_colour() if curve.label is None else curve.colour
-        part = history.sel(time=slice(*limits))
-        values = unit.of(part[name])
-        sheet.axes.plot(part["time"], values, color=colour, linewidth=0.8, label=curve.label)
-        zero_line(sheet.axes)
-        _draw_response_spectra(sheet.panels[1], response, unit, curve)
-        positive = fourier.isel(frequency=slice(1, None))
-        values = amplitude.of(positive["fourier_amplitude"])
-        sheet.panels[2].semilogx(positive["frequency"], values, color=colour, linewidth=0.7)
-    _label_axes(sheet.panels, results, unit, amplitude)
+        values = unit.of(part[f"{_VARIABLE_PREFIX[str(component)]}ground_acceleration"])
+        history.plot(part["time"], values, color=colour, linewidth=0.8, label=curve.label)
+        zero_line(history)
+        _draw_response_spectra(response, spectrum, unit, curve)
+        values = amplitude.of(transform["fourier_amplitude"])
+        highest = max(highest, float(values.max()))
+        fourier.semilogx(transform["frequency"][1:], values[1:], color=colour, linewidth=0.7)
+    history.set_xlim(
+        min(float(part["time"][0]) for part, _, _ in results),
+        max(float(part["time"][-1]) for part, _, _ in results),
+    )
+    history.set(xlabel="time [s]", ylabel=axis_label("acceleration\n", unit.words))
+    response.set(xlabel="period [s]", ylabel=axis_label("pseudo-spectral acceleration", unit.words))
+    response.set_ylim(bottom=0.0)
+    if len(data) == 1:
+        add_legend(response, title="damping", title_fontsize="small")
+    if highest > 0.0:
+        fourier.set_yscale("log")
+        fourier.set_ylim(1e-4 * highest, 2.0 * highest)
+    fourier.set(xlabel="frequency [Hz]", ylabel=axis_label("Fourier amplitude", amplitude.words))
+    for axes in (response, fourier):
+        label_log_ticks(axes, "x")
+        grid(axes)
     if len(data) > 1:
-        sheet.add_legend(*sheet.panels[1].get_legend_handles_labels(), fontsize="small")
+        sheet.add_legend(*response.get_legend_handles_labels(), fontsize="small")
     sheet.set_title(motions_title(data), title)
     return sheet.panels
 
@@ -137,31 +155,6 @@ def _draw_response_spectra(
         axes.semilogx(
             drawn["period"], values, color=colour, ls=line_style(place), lw=1.2, label=label
         )
-
-
-def _label_axes(
-    panels: Panels, results: list[Any], unit: DisplayUnit, amplitude: DisplayUnit
-) -> None:
-    history, response, fourier = panels
-    several = len(results) > 1
-    times = [result[1]["time"].to_numpy() for result in results]
-    drawn_times = [line.get_xdata() for line in history.get_lines() if len(line.get_xdata()) > 2]
-    ends = drawn_times or times
-    history.set_xlim(min(time[0] for time in ends), max(time[-1] for time in ends))
-    history.set(xlabel="time [s]", ylabel=axis_label("acceleration\n", unit.words))
-    response.set(xlabel="period [s]", ylabel=axis_label("pseudo-spectral acceleration", unit.words))
-    response.set_ylim(bottom=0.0)
-    if not several:
-        add_legend(response, title="damping", title_fontsize="small")
-    highest = max(float(amplitude.of(result[3]["fourier_amplitude"]).max()) for result in results)
-    if highest > 0.0:
-        fourier.set_yscale("log")
-        fourier.set_ylim(1e-4 * highest, 2.0 * highest)
-    fourier.set(xlabel="frequency [Hz]", ylabel=axis_label("Fourier amplitude", amplitude.words))
-    label_log_ticks(response, "x")
-    label_log_ticks(fourier, "x")
-    grid(response)
-    grid(fourier)
 
 
 class Average(StrEnum):
@@ -238,13 +231,20 @@ def suite(
     """
     data = labelled_motions(motions, "suite")
     if target is not None:
-        check_target(target, owner="rf.plot.suite")
+        check_target(target, owner=_SUITE_OWNER)
     shown_average = checked_choice(Average, average, owner=_SUITE_OWNER, name="average")
     comparison = read_window(compared, "suite", "compared")
     unit = figure_units(units, "suite").axis_unit(ACCELERATION, "g", acceleration=acceleration)
     labelled = {curve.label or motions_title(data): curve.motion for curve in data}
     dataset = response_spectrum(labelled, periods, damping_ratio, component=component)
     dataset = dataset.sel(period=dataset["period"] > 0.0)
+    if dataset.sizes["damping_ratio"] != 1:
+        msg = f"{_SUITE_OWNER}: damping_ratio must be one number, got {short_repr(damping_ratio)}"
+        raise ComponentError(msg)
+    if not dataset.sizes["period"]:
+        msg = f"{_SUITE_OWNER}: found no period above zero in {short_repr(periods)}"
+        raise ComponentError(msg)
+    damping = float(dataset["damping_ratio"].item())
     values = unit.of(
         dataset["pseudo_spectral_acceleration"].squeeze("damping_ratio").transpose("motion", ...)
     )
@@ -269,10 +269,11 @@ def suite(
     if target is not None:
         low, high = target.limits
         target_period = period[(period >= low) & (period <= high)]
-        target_values = target.at((target_period, "s"))
-        sheet.axes.plot(
-            target_period, unit.of(target_values), color=VERMILLION, linewidth=1.8, label="target"
-        )
+        target_values = unit.of(target.at((target_period, "s")))
+        words = "target"
+        if not np.isclose(target.damping_ratio, damping):
+            words = f"target, {100.0 * target.damping_ratio:g} % damping"
+        sheet.axes.plot(target_period, target_values, color=VERMILLION, linewidth=1.8, label=words)
     sheet.axes.set(
         xscale="log", yscale="log", xlabel="period [s]",
         ylabel=axis_label("pseudo-spectral acceleration", unit.words),
@@ -285,7 +286,6 @@ def suite(
     grid(sheet.axes)
     add_legend(sheet.axes)
     count = len(data)
-    damping = float(dataset["damping_ratio"].to_numpy().ravel()[0])
     usual = f"{count} motion{'s' if count > 1 else ''}; damping {100.0 * damping:g} %"
     sheet.set_title(usual, title)
     return sheet.axes

@@ -66,14 +66,11 @@ def critical_scale(
     data = figure_data(dataset, "critical_scale", units)
     scale, outcome = data["scale"].to_numpy(), data["outcome"].to_numpy()
     reader = figure_units(units, "critical_scale").reader
-    angles = reader.chosen_unit(ANGLE) is not None
-    relative = "peak_relative_rotation" in data and not angles
-    name = "peak_relative_rotation" if relative else "peak_rotation"
-    peak = data[name].to_numpy()
+    relative = "peak_relative_rotation" in data and reader.chosen_unit(ANGLE) is None
+    peak = data["peak_relative_rotation" if relative else "peak_rotation"]
     sheet = make_single_panel(ax, "critical_scale", (6.4, 3.6))
     bounds = np.append(data["scale_above"].to_numpy(), scale.max())
-    overturns_above = data["overturns_above"].to_numpy().astype(bool)
-    for number in np.flatnonzero(overturns_above):
+    for number in np.flatnonzero(data["overturns_above"].to_numpy().astype(bool)):
         sheet.axes.axvspan(
             bounds[number], bounds[number + 1], color=VERMILLION, alpha=0.15, linewidth=0.0
         )
@@ -83,14 +80,19 @@ def critical_scale(
     ):
         chosen = outcome == value
         sheet.axes.plot(
-            scale[chosen], peak[chosen], marker, markersize=3.5, color=colour, label=words
+            scale[chosen],
+            peak.to_numpy()[chosen],
+            marker,
+            markersize=3.5,
+            color=colour,
+            label=words,
         )
     least = float(data["critical_scale"])
     if np.isfinite(least):
         sheet.axes.axvline(
             least, color=text_colour(), linestyle=":", linewidth=1.0, label=f"{least:.4g}"
         )
-    sheet.axes.set(xlabel="scale of the motion [-]", ylabel=variable_label(data[name]))
+    sheet.axes.set(xlabel="scale of the motion [-]", ylabel=variable_label(peak))
     sheet.axes.set_ylim(bottom=0.0)
     grid(sheet.axes)
     add_legend(sheet.axes)
@@ -144,13 +146,12 @@ def sweep(
     """
     if not isinstance(cast("object", runs), xr.Dataset) or not runs.data_vars:
         raise SchemaError(mismatch_message("sweep", runs))
-    data = _drop_single_axes(runs, variable)
     shown_in = display_units(units, owner="rf.plot.sweep")
-    data = shown_in.convert_dataset(data)
-    values = _checked_values(data, variable)
-    overturned = overturns(data) == 1 if "status" in data else None
-    if overturned is not None and set(overturned.dims) != set(values.dims):
-        overturned = None
+    data = shown_in.convert_dataset(_checked_runs(runs, variable))
+    values = data[variable]
+    overturned = xr.zeros_like(values, dtype=bool)
+    if "status" in data and set(data["status"].dims) == set(values.dims):
+        overturned = overturns(data) == 1
     dims = sorted((str(dim) for dim in values.dims), key=lambda dim: _is_numeric_axis(data, dim))
     sheet = make_single_panel(ax, "sweep", (6.4, 4.2))
     if len(dims) == 1 or min(values.sizes.values()) <= _MAX_LINES:
@@ -212,11 +213,9 @@ def free_decay(
         times = [data["time"].to_numpy()] * 3
     else:
         names = ("measured_peak_rotation", "fitted_peak_rotation", "peak_rotation_residual")
-        place = data["measured_peak_rotation"].dims[0]
-        counted = np.arange(1, data.sizes[place] + 1)
-        timed = "measured_peak_time" in data
-        measured = data["measured_peak_time"].to_numpy() if timed else counted
-        fitted = data["fitted_peak_time"].to_numpy() if timed else counted
+        measured = fitted = np.arange(1, data["measured_peak_rotation"].size + 1)
+        if "measured_peak_time" in data:
+            measured, fitted = data["measured_peak_time"], data["fitted_peak_time"]
         times = [measured, fitted, measured]
     sheet = make_sheet(
         ax, "free_decay", _PANELS, (7.2, 4.4),
@@ -240,17 +239,8 @@ def free_decay(
     return sheet.panels
 
 
-def _drop_single_axes(dataset: xr.Dataset, variable: object) -> xr.Dataset:
-    """Leave out axes of one value, such as a single motion, if there are too many axes."""
-    if not isinstance(variable, str) or variable not in dataset.data_vars:
-        return dataset
-    sizes = dataset[variable].sizes
-    if len(sizes) <= _MAX_AXES or max(sizes.values()) == 1:
-        return dataset
-    return dataset.isel({dim: 0 for dim, size in sizes.items() if size == 1})
-
-
-def _checked_values(dataset: xr.Dataset, variable: object) -> xr.DataArray:
+def _checked_runs(dataset: xr.Dataset, variable: object) -> xr.Dataset:
+    """Check the scalar to be drawn; leave out axes of one value if there are too many axes."""
     if not isinstance(variable, str) or variable not in dataset.data_vars:
         variables = ", ".join(
             repr(str(name)) for name, array in dataset.data_vars.items() if 0 < array.ndim < 3
@@ -258,6 +248,9 @@ def _checked_values(dataset: xr.Dataset, variable: object) -> xr.DataArray:
         near = did_you_mean(variable, map(str, dataset.data_vars))
         msg = f"rf.plot.sweep: the runs have no {short_repr(variable)}{near}; they have {variables}"
         raise SchemaError(msg)
+    sizes = dataset[variable].sizes
+    if len(sizes) > _MAX_AXES and max(sizes.values()) > 1:
+        dataset = dataset.isel({dim: 0 for dim, size in sizes.items() if size == 1})
     values = dataset[variable]
     if not 1 <= values.ndim <= _MAX_AXES:
         names = [str(dim) for dim in values.dims]
@@ -274,7 +267,7 @@ def _checked_values(dataset: xr.Dataset, variable: object) -> xr.DataArray:
     if values.dtype.kind not in "fiub":
         msg = f"rf.plot.sweep: {variable!r} holds no numbers"
         raise ComponentError(msg)
-    return values
+    return dataset
 
 
 def _is_numeric_axis(dataset: xr.Dataset, dim: str) -> bool:
@@ -290,7 +283,7 @@ def _axis_values(dataset: xr.Dataset, dim: str) -> tuple[Any, str]:
 
 
 def _draw_lines(
-    axes: Axes, dataset: xr.Dataset, values: xr.DataArray, overturned: Any, x_dim: str,
+    axes: Axes, dataset: xr.Dataset, values: xr.DataArray, overturned: xr.DataArray, x_dim: str,
     other_dims: list[str],
 ) -> None:  # fmt: skip
     places, words = _axis_values(dataset, x_dim)
@@ -309,11 +302,7 @@ def _draw_lines(
             linestyle=line_style(number // 6) if _is_numeric_axis(dataset, x_dim) else "none",
             label=label,
         )  # fmt: skip
-        crossed = (
-            np.zeros(line.shape, bool)
-            if overturned is None
-            else overturned.isel(selected).to_numpy()
-        )
+        crossed = overturned.isel(selected).to_numpy()
         crosses.append((places[crossed], line[crossed]))
     if any(line_dim.size for line_dim, _ in crosses):
         points = np.concatenate(crosses, axis=1)
@@ -329,13 +318,14 @@ def _draw_lines(
 
 
 def _draw_map(
-    axes: Axes, dataset: xr.Dataset, values: xr.DataArray, overturned: Any, dims: list[str]
-) -> None:
+    axes: Axes, dataset: xr.Dataset, values: xr.DataArray, overturned: xr.DataArray,
+    dims: list[str],
+) -> None:  # fmt: skip
     (up, up_words), (across, across_words) = (_axis_values(dataset, dim) for dim in dims)
     mesh = axes.pcolormesh(
         across, up, values.to_numpy().astype(np.float64), cmap="viridis", shading="nearest"
     )
-    if overturned is not None and overturned.any():
+    if overturned.any():
         rows, columns = np.nonzero(overturned.transpose(*dims).to_numpy())
         axes.plot(across[columns], up[rows], "x", color=VERMILLION, ms=3.0, label="overturned")
         axes.legend(loc="lower right", bbox_to_anchor=(1.0, 1.0), fontsize="small", frameon=False)

@@ -178,23 +178,22 @@ def capacity_table(dataset: xr.Dataset, units: DisplayUnits) -> Iterator[str]:
     if capacity.size > MAX_ROWS:
         order = np.argsort(capacity.to_numpy().ravel(), kind="stable")[:MAX_ROWS]
         yield page.paragraph(f"The {order.size} least of {capacity.size} capacities.", kind="soft")
-    names = [variable for variable in _CAPACITY_VARIABLES if variable in dataset]
     flat = {
         variable: dataset[variable].broadcast_like(capacity).transpose(*capacity.dims)
-        for variable in names
+        for variable in _CAPACITY_VARIABLES
+        if variable in dataset
     }
     rows = list[list[str]]()
     for place in order.tolist():
         at = _indices(capacity, place)
-        numbers = [format_value(flat[variable].isel(at), units) for variable in names]
+        numbers = [format_value(values.isel(at), units) for values in flat.values()]
         rows.append([*label_texts(dataset, place, units, name).values(), *numbers])
-    heads = [str(head).replace("_", " ") for head in (*capacity.dims, *names)]
+    heads = [str(head).replace("_", " ") for head in (*capacity.dims, *flat)]
     yield page.number_table(rows, heads)
-    meanings = [
-        f"{variable.replace('_', ' ')}: {dataset[variable].attrs['long_name']}"
-        for variable in names
-    ]
-    yield page.paragraph(f"{'; '.join(meanings)}.", kind="soft")
+    meanings = "; ".join(
+        f"{variable.replace('_', ' ')}: {dataset[variable].attrs['long_name']}" for variable in flat
+    )
+    yield page.paragraph(f"{meanings}.", kind="soft")
 
 
 def order_from_worst(dataset: xr.Dataset) -> np.ndarray:

@@ -1,6 +1,6 @@
 """Result of a check by a code: numbers with their formulas and clauses, verdicts, and its page."""
 
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
 from html import escape
 from os import PathLike
@@ -268,17 +268,11 @@ def read_checks(value: object, owner: str) -> list[CodeCheck]:
     several = [value] if isinstance(value, CodeCheck) else value
     if several is None:
         return []
-    if not is_iterable(several) or isinstance(several, str):
-        msg = (
-            f"{owner}: checks must be of rf.codes, one or a list of them, got {short_repr(several)}"
-        )
-        raise ComponentError(msg)
-    checks = list(cast("Iterable[object]", several))
+    expected, checks = "one or a list of them", [several]
+    if is_iterable(several) and not isinstance(several, str):
+        expected, checks = "such as circolare_2019", list(several)
     for check in checks:
         if not isinstance(check, CodeCheck):
-            msg = (
-                f"{owner}: checks must be of rf.codes, such as circolare_2019, got "
-                f"{short_repr(check)}"
-            )
+            msg = f"{owner}: checks must be of rf.codes, {expected}, got {short_repr(check)}"
             raise ComponentError(msg)
     return cast("list[CodeCheck]", checks)

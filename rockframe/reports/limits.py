@@ -118,9 +118,7 @@ STUDY_WITHOUT_CERTIFICATE: Final = (
 
 
 def model_limits(parts: Parts | None, *, slides: bool = False) -> list[Limit]:
-    """Return the limits that concern a scene; all of them if its parts are not known.
-
-    Equations in which the block slides include its flight, too.
-    """
+    """Return the limits that concern a scene; all of them if its parts are not known."""
+    # equations in which the block slides include its flight, too
     limits = [limit for limit in LIMITS if parts is None or limit.applies_to(parts)]
     return [limit for limit in limits if not (slides and limit.title in (SLIDING, FLIGHT))]

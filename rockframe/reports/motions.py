@@ -1,6 +1,5 @@
 """The motions in a report: metadata of their records, spectra, and the target."""
 
-import json
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
 from typing import Any, Final, TypeAlias, cast
@@ -10,7 +9,7 @@ import xarray as xr
 from numpy.typing import NDArray
 
 from rockframe import plot
-from rockframe.arguments import is_iterable
+from rockframe.arguments import is_iterable, json_attribute
 from rockframe.errors import ComponentError, short_repr
 from rockframe.motion import GroundMotion
 from rockframe.reports import page
@@ -56,11 +55,9 @@ def read_target(value: object, motions: object, owner: str) -> TargetComparison 
     """Read a target, or take that of a suite that was scaled to one."""
     if value is None:
         carried = motions.target if isinstance(motions, MotionSuite) else None
-        return (
-            None
-            if carried is None
-            else TargetComparison(carried, np.geomspace(*carried.limits, 40))
-        )
+        if carried is None:
+            return None
+        return TargetComparison(carried, np.geomspace(*carried.limits, 40))
     if isinstance(value, TargetSpectrum):
         return TargetComparison(value, default_periods(value))
     if isinstance(value, xr.Dataset) and "target_spectral_acceleration" in value:
@@ -80,13 +77,10 @@ def available_motions(dataset: xr.Dataset, value: object, owner: str) -> dict[st
     if "motions_json" not in dataset.attrs:
         return named
     available = known_motions(dataset, value)
-    digests = {
-        str(description.get("sha256"))
-        for description in json.loads(dataset.attrs["motions_json"])
-        if description
-    }
-    digests_of_motions = {motion.sha256 for motion in available.values()} | digests
-    unknown = [label for label, motion in named.items() if motion.sha256 not in digests_of_motions]
+    descriptions = json_attribute(dataset, "motions_json", owner=owner)
+    digests = {str(description.get("sha256")) for description in descriptions if description}
+    digests |= {motion.sha256 for motion in available.values()}
+    unknown = [label for label, motion in named.items() if motion.sha256 not in digests]
     if unknown:
         msg = f"{owner}: the study has no motion with the samples of {unknown[0]!r}"
         raise ComponentError(msg)
@@ -138,18 +132,13 @@ def spectra_section(
         misfits = scaling["spectral_misfit"].to_numpy()
         if len(motions) > 1:
             spectra = scaling["scaled_spectral_acceleration"].mean("motion")
-            ratio = spectra / scaling["target_spectral_acceleration"]
-            yield page.paragraph(_mean_ratio_sentence(ratio.to_numpy(), comparison.periods))
+            ratios = (spectra / scaling["target_spectral_acceleration"]).to_numpy()
+            least, greatest = (comparison.periods[k] for k in (ratios.argmin(), ratios.argmax()))
+            yield page.paragraph(
+                f"The mean of the motions is {ratios.min():.3g} to {ratios.max():.3g} times the "
+                f"target, least at {least:.3g} s and greatest at {greatest:.3g} s."
+            )
     yield _record_table(motions, misfits, units)
-
-
-def _mean_ratio_sentence(ratios: Numbers, periods: Numbers) -> str:
-    """Write the range of the ratio of the mean spectrum to the target."""
-    least, greatest = int(ratios.argmin()), int(ratios.argmax())
-    return (
-        f"The mean of the motions is {ratios[least]:.3g} to {ratios[greatest]:.3g} times the "
-        f"target, least at {periods[least]:.3g} s and greatest at {periods[greatest]:.3g} s."
-    )
 
 
 def _record_table(
@@ -194,8 +183,6 @@ def _cell(name: str, value: Any, units: DisplayUnits) -> str:
     if is_missing(value):
         return "-"
     unit = SCHEMA[name].unit
-    return (
-        str(value)
-        if unit is None
-        else format_number(float(value), str(unit), _column_units(name, units))
-    )
+    if unit is None:
+        return str(value)
+    return format_number(float(value), str(unit), _column_units(name, units))

@@ -8,6 +8,7 @@ from typing import Any, Final, cast
 
 import xarray as xr
 
+from rockframe.arguments import json_attribute
 from rockframe.errors import ComponentError, did_you_mean, short_repr
 from rockframe.reports import page
 
@@ -56,7 +57,7 @@ class Project:
 def project_of_result(value: object, dataset: xr.Dataset, owner: str) -> Project:
     """Read a project, or that of the result if none is given."""
     if value is None:
-        value = json.loads(str(dataset.attrs.get(PROJECT_ATTRIBUTE, "{}")))
+        value = json_attribute(dataset, PROJECT_ATTRIBUTE, owner=owner)
     return read_project(value, owner)
 
 

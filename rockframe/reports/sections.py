@@ -3,6 +3,7 @@
 import json
 import re
 from collections.abc import Iterator, Sequence
+from contextlib import suppress
 from importlib.metadata import version
 from platform import python_version
 from typing import Any, Final
@@ -108,7 +109,9 @@ def verdict_section(dataset: xr.Dataset, reason: str, units: DisplayUnits) -> It
 def scene_section(dataset: xr.Dataset, system: System | None, units: DisplayUnits) -> Iterator[str]:
     """Return the parts with their parameters, and the model."""
     if system is not None:
-        yield from _scene_figure(system, units)
+        with suppress(RockframeError):  # a base of a user's own cannot be drawn
+            drawn = plot.scene(system, units=units.words)
+            yield page.captioned_figure(drawn, "The scene, to scale.")
         for part in system.parts.structural():
             yield from _part_tables(type(part).__name__, part, units)
         yield page.subtitle("Options")
@@ -170,7 +173,7 @@ def response_section(dataset: xr.Dataset, units: DisplayUnits) -> Iterator[str]:
     }:
         angle = units.chosen.get(Unit.RADIAN)
         yield page.captioned_figure(
-            plot.response(dataset, rotation="deg" if angle else "relative", units=units.words),
+            plot.response(dataset, rotation=None if angle else "relative", units=units.words),
             "From the top: ground acceleration; rotation"
             f"{'' if angle else ' over the overturning angle'}; vertical displacement; "
             f"{'slip; ' if has_slid(dataset) else ''}and contact states.",
@@ -236,15 +239,6 @@ def provenance_section(dataset: xr.Dataset, file: str) -> Iterator[str]:
             yield page.preformatted(_indented(str(attributes[name])))
 
 
-def _scene_figure(system: System, units: DisplayUnits) -> Iterator[str]:
-    """Draw the scene, if it can be drawn."""
-    try:
-        drawn = plot.scene(system, units=units.words)
-    except RockframeError:  # a base of a user's own
-        return
-    yield page.captioned_figure(drawn, "The scene, to scale.")
-
-
 def _part_tables(title: str, part: Component, units: DisplayUnits) -> Iterator[str]:
     """Return a part with its parameters, and the parts of which it consists."""
     yield page.subtitle(title)
@@ -279,10 +273,8 @@ def _parameter_rows(part: Component, units: DisplayUnits) -> list[tuple[str, str
 
 
 def _meaning(argument: Declared[Any, Any, Any]) -> str:
-    words = argument.words.split(" [")[0].rstrip(".")
-    return (
-        words if argument.condition is None else words.removesuffix(f"; {argument.condition.words}")
-    )
+    words, condition = argument.words.split(" [")[0].rstrip("."), argument.condition
+    return words if condition is None else words.removesuffix(f"; {condition.words}")
 
 
 def _format_value(value: object, units: DisplayUnits) -> str:

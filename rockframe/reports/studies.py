@@ -1,6 +1,5 @@
 """The sections of a report on many runs, or on an analysis of them."""
 
-import json
 import warnings
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import suppress
@@ -10,6 +9,7 @@ import numpy as np
 import xarray as xr
 
 from rockframe import plot
+from rockframe.arguments import json_attribute
 from rockframe.errors import RockframeError, RockframeWarning, SchemaError, StudyError
 from rockframe.motion import GroundMotion
 from rockframe.plot._checks import figure_function_name
@@ -86,7 +86,7 @@ def worst_case(
 
 def varied_parameters_sentence(dataset: xr.Dataset) -> str:
     """Write which values of the scene differ among the cases; an empty text if none do."""
-    axes: list[dict[str, str]] = json.loads(str(dataset.attrs.get("axes_json", "[]")))
+    axes = json_attribute(dataset, "axes_json", owner="report", default="[]")
     names = [axis["name"].replace("_", " ") for axis in axes if axis["changes"] != Changes.MOTION]
     if not names:
         return ""

@@ -191,13 +191,14 @@ def report(
         body += _study_sections(dataset, available, about, chosen)
     body += [check_section(check, chosen) for check in checked]
     made = str(dataset.attrs.get("history", "")).splitlines()[-1:]
-    head = [f"<h1>{escape(heading)}</h1>", *(page.paragraph(text, kind="soft") for text in made)]
-    file = Path(source).name
     content = [
-        "\n".join(["<header>", *head, "</header>"]),
+        "<header>",
+        f"<h1>{escape(heading)}</h1>",
+        *(page.paragraph(text, kind="soft") for text in made),
+        "</header>",
         *about.block(),
         *body,
-        page.section("Provenance", sections.provenance_section(dataset, file)),
+        page.section("Provenance", sections.provenance_section(dataset, Path(source).name)),
     ]
     written = page.html_page(heading, content).encode()
     return write_file(path, page.FILE_KIND, written, overwrite=overwrite, read=read)

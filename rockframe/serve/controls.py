@@ -25,10 +25,6 @@ class Control:
     unit: str
     group: str  # on the page
 
-    def quantity(self, value: float) -> str | float:
-        """Write a value for components and files."""
-        return f"{value:.15g} {self.unit}" if self.unit else value
-
 
 CONTROLS: Final = (
     Control("width", "Width", 0.1, 5.0, 0.05, 0.8, "m", "body"),
@@ -107,11 +103,8 @@ class TrialScene:
         lines = ["# rockframe run scene.toml"]
         tables = {**self.parts, "motion": motion, "run": {"free_vibration": FREE_VIBRATION}}
         for name, table in tables.items():
-            lines += [
-                "",
-                f"[{name}]",
-                *(f"{key} = {_toml_value(value)}" for key, value in table.items()),
-            ]
+            lines += ["", f"[{name}]"]
+            lines += [f"{key} = {_toml_value(value)}" for key, value in table.items()]
             if name == "motion" and self.numbers["scale"] != 1.0:
                 factor = _toml_value(self.numbers["scale"])
                 lines.append(f"operations = [{{ scaled = {{ factor = {factor} }} }}]")
@@ -121,9 +114,9 @@ class TrialScene:
         return {name: self._quantity(name) for name in ("amplitude", "frequency")}
 
     def _quantity(self, name: str) -> str | float:
-        return next(control for control in CONTROLS if control.name == name).quantity(
-            self.numbers[name]
-        )
+        """Write a number for components and files."""
+        unit = next(control.unit for control in CONTROLS if control.name == name)
+        return f"{self.numbers[name]:.15g} {unit}" if unit else self.numbers[name]
 
 
 def motion_choices(record: NamedRecord | None) -> dict[str, str]:

@@ -91,11 +91,8 @@ def _select(name: str, known: Mapping[str, str], chosen: str) -> str:
 
 
 def _number_inputs(choice: TrialScene, group: str) -> list[str]:
-    return [
-        _number_input(control, choice.numbers[control.name])
-        for control in CONTROLS
-        if control.group == group
-    ]
+    of_group = (control for control in CONTROLS if control.group == group)
+    return [_number_input(control, choice.numbers[control.name]) for control in of_group]
 
 
 def _number_input(control: Control, value: float) -> str:
@@ -106,6 +103,5 @@ def _number_input(control: Control, value: float) -> str:
         f'<input type="number" id="{control.name}" name="{control.name}" {ends} step="any" '
         f'value="{value:g}" required>'
         f'<input type="range" data-for="{control.name}" {ends} step="{control.step:g}" '
-        f'value="{value:g}" '
-        f'aria-label="{control.words}, slider"></div>'
+        f'value="{value:g}" aria-label="{control.words}, slider"></div>'
     )

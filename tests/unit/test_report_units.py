@@ -110,6 +110,16 @@ def test_sweep_report_uses_display_units(tmp_path):
     assert re.search(r"Simulated again: width [67]00 mm", words)
 
 
+def test_histories_of_a_report_are_drawn_in_the_unit_of_angles(tmp_path, monkeypatch):
+    """Degrees were drawn, whichever unit of angles the reader chose."""
+    drawn, draw = [], rf.plot.response
+    monkeypatch.setattr("rockframe.plot.response", lambda *a, **k: drawn.append(draw(*a, **k)))
+    monkeypatch.setattr("rockframe.reports.page.captioned_figure", lambda *_: "")
+    run = rf.System(BLOCK).simulate(PULSE)
+    rf.report(run, tmp_path / "r.html", certify=False, units={"angle": "mrad"})
+    assert drawn[0][1].get_ylabel() == "rotation [mrad]"
+
+
 def test_titles_of_figures_follow_the_units(tmp_path):
     run = rf.System(BLOCK).simulate(PULSE, free_vibration="1 s", outputs=("energy",))
     turned = f"{np.degrees(float(run.peak_rotation)):.3g}"

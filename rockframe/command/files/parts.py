@@ -175,18 +175,13 @@ def _note_constructors(
 ) -> None:
     """Note which other constructors take the keys that this one does not know."""
     for name in unknown:
-        ways = [
-            way
+        ways = " or ".join(
+            f'"{way}"'
             for way, constructor in constructors(kind).items()
             if name in arguments_of(constructor)
-        ]
+        )
         if ways:
-            file.add_fault(
-                (*where, name),
-                f"{name!r} goes with {CONSTRUCTOR} = {' or '.join(map(repr, ways))}".replace(
-                    "'", '"'
-                ),
-            )
+            file.add_fault((*where, name), f'"{name}" goes with {CONSTRUCTOR} = {ways}')
 
 
 _POINT: Final = re.compile(r"\((?P<numbers>[^()]+)\) (?P<unit>\S+)")
@@ -196,10 +191,7 @@ _FROM_MEMBERS: Final = "from_members"
 
 
 def toml_tables(parts: Iterable[Component]) -> list[tuple[str, list[str]]]:
-    """Return the tables of parts: the head of each, and its keys with their values.
-
-    One below the other they are a file of the same parts.
-    """
+    """Return the tables of parts, each with its head and keys; together they are a file."""
     listed = [*parts]
     several = sum(slot_of_class(type(part)) == RESTRAINER for part in listed) > 1
     return [row for part in listed for row in _part_tables(part, several=several)]

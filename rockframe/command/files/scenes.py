@@ -3,6 +3,7 @@
 import sys
 from collections.abc import Mapping
 from dataclasses import dataclass
+from functools import partial
 from importlib import import_module
 from importlib.util import module_from_spec, spec_from_file_location
 from pathlib import Path
@@ -74,12 +75,8 @@ def _read_record(file: TomlFile, where: KeyPath, table: dict[str, Any]) -> Groun
         table["component"] = tuple(component)
     if isinstance(table.get(_RESPONSE), str):
         table[_RESPONSE] = file.path_relative_to(table[_RESPONSE])
-    return call_with_table(
-        file,
-        where,
-        lambda **values: GroundMotion.read(file.path_relative_to(name), **values),
-        table,
-    )
+    read = partial(GroundMotion.read, file.path_relative_to(name))
+    return call_with_table(file, where, read, table)
 
 
 def _construct_motion(file: TomlFile, where: KeyPath, table: dict[str, Any]) -> GroundMotion | None:
@@ -193,11 +190,9 @@ def build_scene(file: TomlFile) -> SceneDescription | None:
     if not file.is_valid:
         return None
     system = call_with_table(file, (OPTIONS,), lambda **values: System(*parts, **values), options)
-    return (
-        None
-        if system is None
-        else SceneDescription(system, motion, run, tuple(file.files), project)
-    )
+    if system is None:
+        return None
+    return SceneDescription(system, motion, run, tuple(file.files), project)
 
 
 def run_keys() -> dict[str, bool]:
@@ -269,15 +264,13 @@ def _read_arguments(**values: Any) -> None:
 
 def _add_unknown_table(file: TomlFile, name: str) -> None:
     letters = name.replace("_", "").casefold()
-    kind = next(
-        (kind for word, kind in registered_classes().items() if word.casefold() == letters), None
-    )
-    slot = None if kind is None else slot_of_class(kind)
-    if kind is None or slot is None:
-        file.add_unknown_key((), name, scene_keys())
-    else:
-        words = f'a {kind.__name__} is written [{slot}] with type = "{kind.__name__}"'
-        file.add_fault((name,), f"unknown key {name!r}; {words}")
+    for word, kind in registered_classes().items():
+        slot = slot_of_class(kind)
+        if word.casefold() == letters and slot is not None:
+            words = f'a {word} is written [{slot}] with type = "{word}"'
+            file.add_fault((name,), f"unknown key {name!r}; {words}")
+            return
+    file.add_unknown_key((), name, scene_keys())
 
 
 def import_modules(file: TomlFile) -> None:

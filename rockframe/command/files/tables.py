@@ -271,10 +271,8 @@ def check_table(
             sound = False
     for name, required in known.items():
         if required and name not in table:
-            file.add_fault(
-                where,
-                f"[{table_title(where)}] lacks {name!r}{_missing_key_note(declared.get(name))}",
-            )
+            note = _missing_key_note(declared.get(name))
+            file.add_fault(where, f"[{table_title(where)}] lacks {name!r}{note}")
             sound = False
     for name, value in table.items():
         if name in known and name in declared:

@@ -8,6 +8,7 @@ import pytest
 import xarray as xr
 
 import rockframe as rf
+from rockframe.command.files.templates import TEMPLATES
 
 pytestmark = pytest.mark.unit
 
@@ -144,6 +145,26 @@ def test_map_command_prints_boundaries_at_each_frequency(run_command):
     assert run_command("map", "scene.toml", *arguments[:4], "--accuracy", "screen")[0] == 0
     code, out, _ = run_command("map", "scene.toml", *arguments, "--pulse", "cosine_pulse")
     assert (code, "Pulse:   cosine pulse" in out) == (0, True)
+
+
+def test_map_command_takes_a_harmonic_motion_of_the_scene(run_command, folder):
+    """Its duration, a text with a unit, ended in an error of Python; so did operations."""
+    arguments = ("--amplitude", "2,8 m/s^2", "--frequency", "2 Hz", "--accuracy", "fast")
+    scene = TEMPLATES["block"].replace('"sine_pulse"', '"harmonic"\nduration = "2 s"')
+    (folder / "harmonic.toml").write_text(scene)
+    code, out, _ = run_command("map", "harmonic.toml", *arguments)
+    assert (code, "Pulse:   harmonic, duration: 2.0 s\n" in out) == (0, True)
+    scaled = "operations = [{ scaled = { factor = 2 } }]\n[run]"
+    (folder / "scaled.toml").write_text(TEMPLATES["block"].replace("[run]", scaled))
+    code, _, problem = run_command("map", "scaled.toml", *arguments)
+    assert (code, "pulse needs an amplitude and a frequency" in problem) == (2, True)
+
+
+@pytest.mark.usefixtures("records")
+def test_pictures_of_several_motions_need_the_name_of_a_file(run_command):
+    """The message was about a file called --1."""
+    code, _, problem = run_command("motion", "records", "--picture", "-")
+    assert (code, "-: 5 pictures do not fit into it; name" in problem) == (2, True)
 
 
 def test_animate_command_writes_page_and_film(run_command):

@@ -53,6 +53,8 @@ VALUES = {
     "critical scene.toml --intensity SA": "needs a period, for example --period '0.5 s'",
     "critical scene.toml --period '1 s' --intensity PGA": "has no period",
     "fragility scene.toml record.AT2 --scales 1:2": "as from:to:step",
+    "fragility scene.toml record.AT2 --limits impact_count=1.2.3": "got '1.2.3'",
+    "fragility scene.toml record.AT2 --limits impact_count=inf": "impact_count must be finite",
     "fragility scene.toml record.AT2 --scales 1:2:0": "as from:to:step",
     "fragility scene.toml record.AT2 --scales '1,2 m'": "without a unit",
     "fragility scene.toml record.AT2 --scales 0,5": "got 0, 5 from '0,5'; commas separate numbers",

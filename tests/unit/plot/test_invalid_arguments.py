@@ -130,6 +130,47 @@ def test_response_requires_a_single_complete_run(arguments):
         rf.plot.tradeoff(arguments["rungs"].drop_vars("history_error"))
 
 
+def test_a_window_outside_the_motion_is_refused():
+    """It ended in an error of an empty sequence, or in a figure without the history."""
+    for motions in (PULSE, [PULSE, PULSE.scaled(2.0)]):
+        for draw in (rf.plot.motion, rf.plot.spectra):
+            with pytest.raises(ComponentError, match=r"the window holds 0 of the motion's samples"):
+                draw(motions, window=("100 s", None))
+
+
+def test_damaged_descriptions_in_a_dataset_are_named(arguments, tmp_path):
+    """They ended in an error of Python's reader of JSON."""
+    run = arguments["run"]
+    with pytest.raises(SchemaError, match=r"rf\.plot\.state: .*'system_json'.* is damaged"):
+        rf.plot.state(run.assign_attrs(system_json="{"))
+    assert "overturn" in run.assign_attrs(system_json="{").rockframe._repr_html_()
+    with pytest.raises(SchemaError, match=r"report: .*'project_json' is damaged"):
+        rf.report(run.assign_attrs(project_json="{"), tmp_path / "r.html")
+
+
+def test_spectra_of_a_set_have_one_damping_ratio_and_a_period():
+    """Several ratios, and no period but zero, ended in errors of other libraries."""
+    with pytest.raises(ComponentError, match=r"damping_ratio must be one number, got \[0\.02"):
+        rf.plot.suite([PULSE], damping_ratio=[0.02, 0.05])
+    with pytest.raises(ComponentError, match=r"suite: found no period above zero"):
+        rf.plot.suite([PULSE], ["0 s"])
+
+
+def test_a_target_of_another_damping_ratio_is_labelled_with_it():
+    """It stood beside spectra of 5 % as if it were of the same damping."""
+    words = {}
+    for ratio in (0.05, 0.08):
+        target = rf.TargetSpectrum.eurocode_8("0.2 g_0", damping_ratio=ratio)
+        words[ratio] = rf.plot.suite([PULSE], target=target).get_legend_handles_labels()[1][-1]
+    assert words == {0.05: "target", 0.08: "target, 8 % damping"}
+
+
+def test_a_panel_given_twice_is_refused(arguments):
+    """The first of the two remained empty."""
+    with pytest.raises(ComponentError, match=r"each once, got \('rotation', 'rotation'\)"):
+        rf.plot.response(arguments["run"], panels=("rotation", "rotation"))
+
+
 def test_converted_histories_are_plotted_in_their_unit():
     """Rotations in degrees are not divided by an overturning angle in radians."""
     system = rf.System(rf.Block(width="0.6 m", height="2 m", mass="400 kg"))

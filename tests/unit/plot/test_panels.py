@@ -138,6 +138,12 @@ def test_several_runs_have_a_line_a_label_and_a_strip_each(runs):
         rf.plot.response([runs["whole"], 3])
 
 
+def test_runs_whose_keys_are_spelled_alike_are_all_drawn(runs):
+    run = next(iter(runs.values()))
+    (axes,) = rf.plot.response({1: run, "1": run}, panels="rotation")
+    assert {"1: 1", "2: 1"} <= set(axes.get_legend_handles_labels()[1])
+
+
 def test_event_markers_are_at_event_times(runs):
     run = runs["whole"]
     axes = rf.plot.response(run, panels="rotation", rotation="deg", events=True)[0]

@@ -63,6 +63,16 @@ def test_annual_rate_without_a_fragility_is_plotted_with_a_note():
     assert axes.figure.get_suptitle().startswith("There is no fragility")
 
 
+def test_shares_of_few_cases_are_plotted_without_empty_groups():
+    """Twelve groups of fewer cases left some empty, with warnings about means of nothing."""
+    spread = {"width": ("uniform", "0.2 m", "0.3 m")}
+    found = rf.probability_of_overturning(SYSTEM, PULSE, spread=spread, cases=6, **QUIET)
+    _, right = rf.plot.probability(found)
+    (steps,) = right.patches
+    assert len(steps.get_data().values) == 6
+    assert np.isfinite(steps.get_data().values).all()
+
+
 def test_equal_verdicts_are_plotted_without_sensitivity_indices():
     spread = {"width": ("uniform", "0.24 m", "0.26 m"), "mass": ("uniform", "90 kg", "110 kg")}
     small = {"a": PULSE.scaled(0.1), "b": PULSE.scaled(0.2)}
