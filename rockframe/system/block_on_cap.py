@@ -16,12 +16,17 @@ from rockframe.dynamics.single_body import eccentricity_of
 from rockframe.dynamics.statics import StandingChain
 from rockframe.dynamics.vibrations import ChainBody
 from rockframe.errors import AssemblyError
-from rockframe.system.bodies import Cap
-from rockframe.system.compatibility import NO_SLIP, BaseFriction
+from rockframe.system.bodies import NO_SLIP, BaseFriction, Cap
 from rockframe.system.options import restraint_words
-from rockframe.system.setting import Setting, SlipRange, Words, chain_slips, sliding_words
+from rockframe.system.setting import (
+    Setting,
+    SlipRange,
+    Words,
+    chain_slips,
+    overhang_cautions,
+    sliding_words,
+)
 from rockframe.system.single_body import SingleBodySetting
-from rockframe.system.sliding_stack import overhang_cautions
 from rockframe.system.statics import SmallMotion, StandingBodies, Statics, static_values
 from rockframe.system.support import BaseWords, Support
 

@@ -1,5 +1,6 @@
 """Bodies on a base: sizes, inertia and restitution, block and cap as one body, and their load."""
 
+import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property, lru_cache
@@ -33,6 +34,24 @@ class Restitutions(NamedTuple):
         if self.left == self.right:
             return f"{self.left:.6g}"
         return f"{self.left:.6g} (onto the left corner), {self.right:.6g} (onto the right one)"
+
+
+class BaseFriction(NamedTuple):
+    """Coefficients of static, kinetic and impulsive friction; infinite where a base holds."""
+
+    static: float
+    kinetic: float
+    impulsive: float
+
+    def row(self, base: str = "") -> tuple[str, str]:
+        """Return a name for the coefficients, after that of their base, and the coefficients."""
+        sticks = ", held in impacts" if math.isinf(self.impulsive) else ""
+        words = f"{self.static:.6g}, {self.kinetic:.6g}{sticks}"
+        return f"{base}friction at rest, and of slip", "held" if math.isinf(self.static) else words
+
+
+NO_SLIP: Final = BaseFriction(math.inf, math.inf, math.inf)
+"""Friction of a base on which nothing slips."""
 
 
 def base_restitution(base: Component | None, greatest: Restitutions) -> Restitutions:
