@@ -106,37 +106,44 @@ def _rectangle(half_width: float, height: float, x: float = 0.0, y: float = 0.0)
 
 
 def geometry_of(scene: Assembly) -> Geometry:
-    """Return the geometry of a scene."""
-    parts, setting = scene.parts, scene.setting
-    if parts.stack is not None:
-        return _stack_geometry(parts.stack, scene)
-    block, frame = parts.block_si, None if parts.frame is None else parts.frame.si
-    cap = None if parts.cap is None else parts.cap_si
+    """Return the geometry of a scene; bases between the bodies of a stack are not drawn."""
+    parts, setting, block = scene.parts, scene.setting, scene.parts.block_si
+    cap, frame = None if parts.cap is None else parts.cap_si, parts.frame
     members = parts.block.members if isinstance(parts.block, FrameEquivalent) else ()
     body, sinks = setting.body, [support.settlement for support in setting.supports]
-    level = 2.0 * cap.half_height if setting.stacked and cap is not None else 0.0
+    bodies, places = (block,), [(0.0, 0.0)]
+    if parts.stack is not None:
+        bodies, body = parts.stack.si.bodies, block
+        for under, offset in zip(bodies[:0:-1], parts.stack.si.offsets[-2::-1], strict=True):
+            places.insert(0, (places[0][0] + offset, places[0][1] + under.height))
+    (beside, level), drawn = places[0], 0 if parts.wall is None else parts.wall.si.on_body - 1
+    if setting.stacked and cap is not None:
+        level = 2.0 * cap.half_height
     return Geometry(
         outline=_rectangle(block.half_width, block.height),
         members=tuple(map(np.array, member_outlines(members))),
         half_width=block.half_width,
         centre=(block.eccentricity, block.centre_height),
-        response_centre=(body.eccentricity, level + body.centre_height),
+        response_centre=(beside + body.eccentricity, level + body.centre_height),
         cap=None if cap is None else (cap.half_width, 2.0 * cap.half_height),
-        pad_settlement=None if parts.pads is None else sinks[0],
+        pad_settlement=None if parts.pads is None or parts.stack is not None else sinks[0],
         soil_settlement=None if parts.soil is None else sinks[-1],
         stacked=setting.stacked,
+        lower=tuple(
+            LowerBody(_rectangle(under.half_width, under.height, x, y),
+                      (x + under.eccentricity, y + under.centre_height))
+            for under, (x, y) in zip(bodies[1:], places[1:], strict=True)
+        ),
         inclination=scene.options.inclination,
         small_rotation=scene.options.small,
         links=_linked_points(setting),
-        columns=() if frame is None else tuple(column_positions(frame)),
-        beam=None if frame is None else np.array(frame_outlines(frame)[-1]),
-        wall=_wall_outline(parts.wall, block),
-    )
+        columns=() if frame is None else tuple(column_positions(frame.si)),
+        beam=None if frame is None else np.array(frame_outlines(frame.si)[-1]),
+        wall=_wall_outline(parts.wall, bodies[drawn], places[drawn]),
+    )  # fmt: skip
 
 
-def _wall_outline(
-    wall: RearWall | None, body: BlockSI, place: tuple[float, float] = (0.0, 0.0)
-) -> Array | None:
+def _wall_outline(wall: RearWall | None, body: BlockSI, place: tuple[float, float]) -> Array | None:
     """Return the outline of a wall in drawings: as high and as thick as its body.
 
     `place` is the middle of the body's base, from the middle of the lowest one.
@@ -162,34 +169,6 @@ def _linked_points(setting: Setting) -> tuple[LinkedPoints, ...]:
             points[0, 1] += setting.bodies[link.on].centre_height + setting.tops[link.on]
         linked.append(LinkedPoints(points, (link.on, link.to)))
     return tuple(linked)
-
-
-def _stack_geometry(stack: Stack, scene: Assembly) -> Geometry:
-    """Return the geometry of a stack; bases between its bodies are not drawn."""
-    lower: list[LowerBody] = []
-    beside = level = 0.0
-    bodies, offsets = stack.si.bodies, stack.si.offsets
-    for body, offset in zip(bodies[:0:-1], offsets[:0:-1], strict=True):
-        beside += offset
-        centre = (beside + body.eccentricity, level + body.centre_height)
-        lower.insert(0, LowerBody(_rectangle(body.half_width, body.height, beside, level), centre))
-        level += body.height
-    block = bodies[0]
-    beside += offsets[0]
-    wall = scene.parts.wall
-    k = 0 if wall is None else wall.si.on_body - 1
-    place = sum(offsets[k:]), sum(under.height for under in bodies[k + 1 :])
-    return Geometry(
-        outline=_rectangle(block.half_width, block.height),
-        half_width=block.half_width,
-        centre=(block.eccentricity, block.centre_height),
-        response_centre=(beside + block.eccentricity, level + block.centre_height),
-        soil_settlement=None if scene.parts.soil is None else scene.setting.supports[-1].settlement,
-        small_rotation=scene.options.small,
-        lower=tuple(lower),
-        links=_linked_points(scene.setting),
-        wall=_wall_outline(wall, bodies[k], place),
-    )
 
 
 _PAD_THICKNESS: Final = 0.06
