@@ -22,7 +22,7 @@ class LowerBody(NamedTuple):
     """A body of a stack; places are from the middle of the lowest base [m]."""
 
     outline: Array
-    centre: tuple[float, float]  # its centre of mass
+    centre: tuple[float, float]  # its centre of mass, with masses on it
 
 
 class LinkedPoints(NamedTuple):
@@ -46,7 +46,7 @@ class Geometry:
     half_width: float  # half the width of the block's base
     centre: tuple[float, float]  # the block's centre of mass, from the middle of its own base
     # centre of mass of the body whose motion results give, from the middle of the lowest base: of
-    # the block, or of block and cap where these are one body
+    # the block, of block and cap where these are one body, or of the block with masses on it
     response_centre: tuple[float, float]
     small_rotation: bool  # whether the kinematics are expanded in the rotation
     inclination: float = 0.0  # angle by which the base line rises to the right [rad]
@@ -57,6 +57,7 @@ class Geometry:
     soil_settlement: float | None = None
     stacked: bool = False  # whether there are pads between block and cap
     lower: tuple[LowerBody, ...] = ()  # bodies of a stack beneath the block, from the top down
+    beside: float = 0.0  # distance of the middle of the block's base to the right of the lowest one
     links: tuple[LinkedPoints, ...] = ()  # points that restrainers link
     # places of the columns under a beam, to the right of the middle; the block is one column
     columns: tuple[float, ...] = ()
@@ -73,8 +74,7 @@ class Geometry:
     @property
     def base_position(self) -> Array:
         """The middle of the block's base, shape (2,) [m]."""
-        beside = self.response_centre[0] - self.centre[0] if self.lower else 0.0
-        return np.array([beside, self.base_level])
+        return np.array([self.beside, self.base_level])
 
     @property
     def height(self) -> float:
@@ -112,8 +112,9 @@ def geometry_of(scene: Assembly) -> Geometry:
     members = parts.block.members if isinstance(parts.block, FrameEquivalent) else ()
     body, sinks = setting.body, [support.settlement for support in setting.supports]
     bodies, places = (block,), [(0.0, 0.0)]
+    moving = setting.bodies if isinstance(setting, StackSetting) else ()
     if parts.stack is not None:
-        bodies, body = parts.stack.si.bodies, block
+        bodies = parts.stack.si.bodies
         for under, offset in zip(bodies[:0:-1], parts.stack.si.offsets[-2::-1], strict=True):
             places.insert(0, (places[0][0] + offset, places[0][1] + under.height))
     (beside, level), drawn = places[0], 0 if parts.wall is None else parts.wall.si.on_body - 1
@@ -124,6 +125,7 @@ def geometry_of(scene: Assembly) -> Geometry:
         members=tuple(map(np.array, member_outlines(members))),
         half_width=block.half_width,
         centre=(block.eccentricity, block.centre_height),
+        beside=beside,
         response_centre=(beside + body.eccentricity, level + body.centre_height),
         cap=None if cap is None else (cap.half_width, 2.0 * cap.half_height),
         pad_settlement=None if parts.pads is None or parts.stack is not None else sinks[0],
@@ -131,8 +133,8 @@ def geometry_of(scene: Assembly) -> Geometry:
         stacked=setting.stacked,
         lower=tuple(
             LowerBody(_rectangle(under.half_width, under.height, x, y),
-                      (x + under.eccentricity, y + under.centre_height))
-            for under, (x, y) in zip(bodies[1:], places[1:], strict=True)
+                      (x + body.eccentricity, y + body.centre_height))
+            for under, body, (x, y) in zip(bodies[1:], moving[1:], places[1:], strict=True)
         ),
         inclination=scene.options.inclination,
         small_rotation=scene.options.small,
