@@ -15,6 +15,7 @@ from rockframe.dynamics.chain.rigid import RigidChain
 from rockframe.errors import ModelWarning, RockframeWarning, SolverWarning, warn
 from rockframe.motion import GroundMotion
 from rockframe.proof.verdict import Proof
+from rockframe.results.forces import friction_words
 from rockframe.results.outcome import (
     broken_links,
     event_columns,
@@ -30,7 +31,6 @@ from rockframe.signals.arrays import AnyArray
 from rockframe.simulation.certify.certificate import certify
 from rockframe.simulation.certify.run_summary import RunSummary, run_summary
 from rockframe.simulation.certify.second_look import doubts, peak_error, second_look
-from rockframe.simulation.friction_checks import friction_words, sliding_cautions
 from rockframe.simulation.plan import END_STATE, Plan, ending_as_json, start_of
 from rockframe.simulation.provenance import motion_after_end, motion_attributes
 from rockframe.simulation.run_arguments import PROVED, Certification
@@ -135,12 +135,11 @@ class Response:
             lambda: list(_separation_cautions(self.system, plan.motion, values, falls)),
             [], _SEPARATION_CHECK, missing,
         )  # fmt: skip
+        checks = self.outputs.sliding_checks
         sliding = compute_or_note(
-            lambda: list(sliding_cautions(self.outputs.sliding_checks)),
-            [],
-            _FRICTION_CHECK,
-            missing,
-        )
+            lambda: [f"{one.body} {one.words}; the model holds it" for one in checks if one.slides],
+            [], _FRICTION_CHECK, missing,
+        )  # fmt: skip
         _ = self.scalars  # computed first: what fails is added to `missing`
         cut_off = [] if summary.status.finished else [verdict(summary, setting, self.system.model)]
         beyond = setting.beyond_edges(summary.ending)

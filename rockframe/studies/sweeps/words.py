@@ -10,13 +10,13 @@ import numpy as np
 import xarray as xr
 
 from rockframe.errors import ModelWarning, SolverWarning, warn
+from rockframe.results.forces import count_slides
 from rockframe.results.joining import CASE_COUNT
 from rockframe.results.outcome import MIN_REPORTED_SLIP, PEAK_SLIPS, overturned_from_status
 from rockframe.results.schema import with_variables
 from rockframe.results.variables.runs import RunStatus
 from rockframe.results.variables.studies import MESSAGE, REPEATED, VERDICT_CHANGED
 from rockframe.signals.arrays import AnyArray
-from rockframe.simulation.friction_checks import count_slides
 from rockframe.simulation.run import NONE
 from rockframe.studies.sweeps.axes import OWNER
 
