@@ -162,7 +162,13 @@ def certify(
     """Make the certificate of a run."""
     if base.overturned is None:
         return Certificate(certification, plan, base)
-    bare = plan.without_outputs()
+    bare, limits = plan.without_outputs(), system.setting.overturning_angles
+
+    def scaled(change: float) -> RunSummary | None:
+        """Make the run with a scaled motion or, without one, with a scaled start."""
+        other = scaled_plan(bare, 1.0 + change, limits)
+        return None if other is None else run(system, other)
+
     with warnings.catch_warnings():
         # the run itself has given them
         warnings.simplefilter("ignore", ModelWarning)
@@ -173,7 +179,8 @@ def certify(
         most = max(
             certification.runs - len(finer) - _number_of_runs(nudged), certification.runs // 4
         )
-        along = _scaled(system, bare, base, certification, run, most)
+        row = scales(certification.nudge, certification.reach)
+        along = scan(scaled, base, row, most=most, resolution=RESOLUTION)
     return Certificate(certification, plan, base, finer, nudged, along)
 
 
@@ -195,25 +202,6 @@ def _nudged(
         return scan(look, base, row, most=count, resolution=NUDGE_RESOLUTION, refine_flip=False)
 
     return [(words, along(scene_at)) for words, scene_at in every]
-
-
-def _scaled(
-    system: Assembly,
-    plan: Plan,
-    base: RunSummary,
-    certification: Certification,
-    run: Run,
-    most: int,
-) -> Scan:
-    """Scale the motion or, without one, the start."""
-    limits = system.setting.overturning_angles
-
-    def look(change: float) -> RunSummary | None:
-        other = scaled_plan(plan, 1.0 + change, limits)
-        return None if other is None else run(system, other)
-
-    row = scales(certification.nudge, certification.reach)
-    return scan(look, base, row, most=most, resolution=RESOLUTION)
 
 
 def _perturbed_run(system: Assembly, plan: Plan, run: Run) -> RunSummary | None:
