@@ -169,10 +169,7 @@ def _is_about_corner(si: BlockSI) -> bool:
 
 
 def width_from_radius(owner: str, radius: Any, slenderness: Any, centre_height: Any = None) -> Any:
-    """Return the width [m] of a block by R0 [m] and H/B; `owner` is named in messages.
-
-    The centre of mass is at half the height, unless its height above the base is given [m].
-    """
+    """Return the width of a block [m] by R0, H/B and the height of its centre, if it is not H/2."""
     if centre_height is None:
         return 2.0 * radius / hypot(1.0, slenderness)
     if radius > centre_height:

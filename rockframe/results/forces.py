@@ -109,10 +109,7 @@ class EventStates:
         return EventStates(self.time[selected], self.is_impact[selected], before, after)
 
     def impulses(self, mass: float) -> dict[str, AnyArray]:
-        """Return the impulses of the base on the body at the events [N s].
-
-        Their ratio at an impact on rigid ground is :eq:`eq-impact-friction`.
-        """
+        """Return the impulses of the base on the body at events, :eq:`eq-impact-friction` [N s]."""
         impulses: dict[str, AnyArray] = {}
         for way in ("horizontal", "vertical"):
             on_base = f"{way}_velocity_on_base"  # in a cascade that of the second stage

@@ -58,10 +58,7 @@ def outputs_as_list(outputs: object) -> list[object]:
 def read_outputs(
     outputs: object, points: object, faults: list[str]
 ) -> tuple[tuple[str, ...], tuple[Diagnostic, ...]]:
-    """Read the argument ``outputs``: names of variables, groups and diagnostics.
-
-    Gives variables and diagnostics, each in the order of their tables; unknown names become faults.
-    """
+    """Read ``outputs``: give variables and diagnostics in the order of their tables."""
     names: set[str] = set()
     diagnostics: set[str] = set()
     for value in outputs_as_list(outputs):

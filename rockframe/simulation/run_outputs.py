@@ -80,10 +80,7 @@ def ground_at(motion: GroundMotion | None, time: Array) -> Array:
 def compute_outputs(
     system: Assembly, plan: Plan, run: Trajectory, missing: list[str]
 ) -> RunOutputs:
-    """Return what follows from the samples of a run: histories, if they are kept, peaks and points.
-
-    What cannot be computed is named in `missing`.
-    """
+    """Return what follows from the samples of a run; what cannot be computed is in `missing`."""
     setting, load, model = system.setting, system.setting.load, system.model
     observed = _ObservedRun(system, plan, run)
     values, until_overturning = observed.histories(), observed.events

@@ -115,16 +115,13 @@ class SupportedBody(BodyGeometry):
         moment = moment - self.inertia * angular
         return moment + values[LINK_MOMENT] if LINK_MOMENT in values else moment
 
-    def base_settlement(self, rotation: Array, height: Array, *, small: bool) -> Array:
-        """Return the settlement of the middle of the base from rest, :eq:`eq-settlement` [m].
-
-        `height` is the rise of the centre of mass from rest.
-        """
+    def base_settlement(self, rotation: Array, rise: Array, *, small: bool) -> Array:
+        """Return the settlement of the middle of the base from rest, :eq:`eq-settlement` [m]."""
         half, beside = 0.5 * rotation, self.eccentricity * rotation
         if not small:
             half = np.sin(half)
             beside = self.eccentricity * np.sin(rotation) if self.eccentricity != 0.0 else beside
-        return -height - beside - 2.0 * self.centre_height * half**2
+        return -rise - beside - 2.0 * self.centre_height * half**2
 
     def relative_to_centre(
         self, x: Array, y: Array, values: Mapping[str, Any]
@@ -168,11 +165,8 @@ class CornerSupportedBody(SupportedBody):
         lift = 0.0 if small else values["horizontal_reaction"] * np.abs(sine)
         return self.contact_half_width * (shift * cosine + lift)
 
-    def base_settlement(self, rotation: Array, height: Array, *, small: bool) -> Array:
-        """Return the settlement of the middle of the base from rest [m].
-
-        It is zero or negative: the body rotates about a corner, and the middle rises.
-        """
+    def base_settlement(self, rotation: Array, rise: Array, *, small: bool) -> Array:
+        """Return the settlement of the middle of the base, zero or negative about a corner [m]."""
         return -self.contact_half_width * np.abs(rotation if small else np.sin(rotation))
 
 

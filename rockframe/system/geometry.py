@@ -26,21 +26,15 @@ class LowerBody(NamedTuple):
 
 
 class LinkedPoints(NamedTuple):
-    """The two points of a restrainer, from the middle of the lowest base [m], and their bodies.
-
-    Bodies are counted from 0 at the top; -1 is the ground.
-    """
+    """The two points of a restrainer, from the middle of the lowest base [m], and their bodies."""
 
     points: Array
-    bodies: tuple[int, int]
+    bodies: tuple[int, int]  # counted from 0 at the top; -1 is the ground
 
 
 @dataclass(frozen=True)
 class Geometry:
-    """Sizes and places of a scene's parts, in SI units, as :eq:`eq-scene-places` needs them.
-
-    Places are to the right of the middle of the lowest base, and above it.
-    """
+    """Sizes and places of parts, from the middle of the lowest base, :eq:`eq-scene-places` [m]."""
 
     outline: Array  # outline of the block, from the middle of its own base
     half_width: float  # half the width of the block's base

@@ -50,10 +50,7 @@ class RigidGroundSetting(Setting):
 
     @property
     def uplift_acceleration(self) -> float:
-        """Horizontal ground acceleration at which rocking starts, g tan(theta) [m s^-2].
-
-        The lesser of both sides, :eq:`eq-incline-uplift`; infinite if neither side rocks.
-        """
+        """Least ground acceleration at which rocking starts, :eq:`eq-incline-uplift` [m s^-2]."""
         return min(self.uplift_accelerations)
 
     @property

@@ -246,10 +246,7 @@ class Setting(ABC):
         return {f"{FRICTION_TO_ROCK} b/h": min(body.left, body.right) / body.centre_height}
 
     def start_faults(self, rotation: float, has_vertical_start: bool) -> list[str]:
-        """Return the faults of an initial state, by the rotation and the base of the body.
-
-        On rigid ground, which has no support, a vertical start is a fault.
-        """
+        """Return the faults of an initial state; a vertical start on rigid ground is one."""
         if not self.supports:
             return [NO_VERTICAL_START] if has_vertical_start else []
         return self.supports[0].start_faults(rotation, has_vertical_start)

@@ -188,10 +188,7 @@ class StackedBodies(Setting):
         )
 
     def rigid_base_load(self, k: int) -> RigidBaseLoad:
-        """Return the load on the rigid base under body `k`, :eq:`eq-link-rest`.
-
-        It carries all bodies above it, and the forces of links on them in the upright position.
-        """
+        """Return the load of bodies and links above on rigid base `k`, :eq:`eq-link-rest`."""
         load = self.bases[k].load
         normal, couple, shear = load.weight, 0.0, 0.0
         x_base, y_base = self.base_of(k)
@@ -206,10 +203,7 @@ class StackedBodies(Setting):
         return RigidBaseLoad(normal, *limits, shear)
 
     def uplift_limits(self, k: int) -> UpliftLimits:
-        """Return the uplift limits of the rigid base under body `k`, with link forces at rest.
-
-        Without links it is :eq:`eq-rigid-together`, and the friction b/h.
-        """
+        """Return the limits of rigid base `k`; without links it is :eq:`eq-rigid-together`."""
         load, body = self.rigid_base_load(k), self.bases[k].load.body
         left, right = load.left_limit / body.centre_height, load.right_limit / body.centre_height
         needed = min(abs(left - load.shear), abs(right + load.shear))
