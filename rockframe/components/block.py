@@ -14,7 +14,15 @@ from rockframe.components.block_numbers import (
     inertia_warnings,
     width_from_radius,
 )
-from rockframe.components.parameters import DERIVED, Declared, Derived, Parameter, Ratio, SIValues
+from rockframe.components.parameters import (
+    DERIVED,
+    Declared,
+    Derived,
+    Parameter,
+    Ratio,
+    SIValues,
+    checked_si,
+)
 from rockframe.components.shapes import outline, parts
 from rockframe.errors import ComponentError, ModelWarning, short_repr, warn
 from rockframe.notebook import Polygon, rectangle
@@ -285,10 +293,10 @@ class Block(Component[BlockSI]):
         sizes = {name: values[name] for name in _SIZE_PARAMETERS if name in values}
         if not sizes:
             return super().with_si(values)
-        for name, value in sizes.items():
-            if not POSITIVE.holds(value):
-                parameter = _SIZE_PARAMETERS[name]
-                parameter.read(parameter.write(value), type(self).__name__)
+        owner = type(self).__name__
+        sizes = {
+            name: checked_si(_SIZE_PARAMETERS[name], value, owner) for name, value in sizes.items()
+        }
         others = {name: value for name, value in values.items() if name not in _SIZE_PARAMETERS}
         return super().with_si({**others, **self._width_and_height(sizes, others)})
 

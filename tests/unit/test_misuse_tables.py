@@ -230,6 +230,8 @@ VALUES = {
     "BLOCK.with_si(3)": "Block.with_si: values must be a mapping",
     "BLOCK.with_si({'width': [1.0]})": "Block: width",
     "BLOCK.with_si({'width': True})": "Block: width",
+    "BLOCK.with_si({'slenderness': 'x'})": "slenderness needs a pure ratio, got 'x'",
+    "BLOCK.with_si({'radius': [1.0]})": "radius needs a length",
     "BLOCK.with_scaled('width', 'x')": "factor needs a pure ratio, got 'x'",
     "BLOCK.with_scaled('width', None)": "factor",
     "BLOCK.with_scaled('width', -1.0)": "width must be greater than zero",
