@@ -293,10 +293,8 @@ class Block(Component[BlockSI]):
         sizes = {name: values[name] for name in _SIZE_PARAMETERS if name in values}
         if not sizes:
             return super().with_si(values)
-        owner = type(self).__name__
-        sizes = {
-            name: checked_si(_SIZE_PARAMETERS[name], value, owner) for name, value in sizes.items()
-        }
+        for name, value in sizes.items():
+            sizes[name] = checked_si(_SIZE_PARAMETERS[name], value, type(self).__name__)
         others = {name: value for name, value in values.items() if name not in _SIZE_PARAMETERS}
         return super().with_si({**others, **self._width_and_height(sizes, others)})
 

@@ -46,7 +46,13 @@ class BlockOnCapSetting(Setting):
     upper: SingleBodySetting  # the block on its pads
     lower: SingleBodySetting  # block and cap as one body on the soil
     cap: Cap  # the cap
+    name: ClassVar[str]  # of the model
     stacked: ClassVar[bool] = True
+
+    @property
+    def model(self) -> str:
+        """Name of the model."""
+        return self.name
 
     @property
     def supports(self) -> tuple[Support, ...]:
@@ -163,10 +169,7 @@ class BlockOnCapSetting(Setting):
 class CoupledSetting(BlockOnCapSetting):
     """Block and cap coupled in one set of equations."""
 
-    @property
-    def model(self) -> str:
-        """Name of the model."""
-        return "coupled"
+    name = "coupled"
 
     def cautions(self) -> list[str]:
         """Return the warnings of pads and soil, and about a cap that is too light."""
@@ -214,13 +217,9 @@ class SlidingCoupledSetting(CoupledSetting):
     """Block and cap, with friction on pads, on soil or on both."""
 
     frictions: tuple[BaseFriction, BaseFriction]  # between block and cap, between cap and soil
+    name = "coupled-sliding"
     slides = True
     sliding_bodies = ("the block", "the cap")
-
-    @property
-    def model(self) -> str:
-        """Name of the model."""
-        return "coupled-sliding"
 
     def words(self) -> Words:
         """Describe block, cap and soil, and their friction."""
@@ -253,10 +252,7 @@ class SlidingCoupledSetting(CoupledSetting):
 class CascadeSetting(BlockOnCapSetting):
     """Two stages, Eq. (20): both as one body on the soil, then the block on the moving cap."""
 
-    @property
-    def model(self) -> str:
-        """Name of the model."""
-        return "cascade"
+    name = "cascade"
 
     def equations(self, pads: BaseWords, soil: BaseWords) -> list[tuple[str, str]]:
         """Return each stage's contact states with the equations that govern them."""

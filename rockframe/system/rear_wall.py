@@ -37,13 +37,9 @@ class RearWallSetting(RigidGroundSetting):
     wall: RearWall
     rebound: float  # angular velocity after an impact over that before it [1]
     height: float  # height of the block [m]
+    name = "rigid ground with a wall"
     struck_by_base = False
     flight_advice = "; give the wall a stiffness to follow its flight"
-
-    @property
-    def model(self) -> str:
-        """Name of the model."""
-        return "rigid ground with a wall"
 
     @property
     def direction(self) -> float:

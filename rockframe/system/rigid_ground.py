@@ -35,6 +35,8 @@ class RigidGroundSetting(Setting):
     """A block on rigid ground."""
 
     restitution: Restitutions  # eps of its corners [1]
+    name: ClassVar[str] = "rigid ground"
+    """Name of the model."""
     flies = False
     flight_advice: ClassVar[str] = "; put it on a TwoSpringSupport to follow its flight"
     steps_cost_most = False
@@ -46,7 +48,7 @@ class RigidGroundSetting(Setting):
     @property
     def model(self) -> str:
         """Name of the model."""
-        return "rigid ground"
+        return self.name
 
     @property
     def uplift_acceleration(self) -> float:
@@ -239,13 +241,9 @@ class SlidingSetting(RigidGroundSetting):
 
     friction: BaseFriction
     impact: Impact  # law of its impacts
+    name = "sliding on rigid ground"
     slides = True
     flies = True
-
-    @property
-    def model(self) -> str:
-        """Name of the model."""
-        return "sliding on rigid ground"
 
     @property
     def lands_flat(self) -> bool:
