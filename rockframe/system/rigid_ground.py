@@ -3,7 +3,7 @@
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, ClassVar
+from typing import TYPE_CHECKING, ClassVar, Final
 
 from rockframe.case_arrays import atan, cos, hypot, maximum, python_number, sin, sqrt, tan
 from rockframe.components.bases import Impact
@@ -28,6 +28,9 @@ from rockframe.units import angle_words
 
 if TYPE_CHECKING:
     from rockframe.dynamics.slide_rock import SlideRock
+
+_ON_SLOPE: Final = ", with gravity g cos(i) in the place of g, and xg'' with g sin(i)"
+"""Remark on an equation along and normal to an inclined base."""
 
 
 @dataclass(frozen=True)
@@ -177,7 +180,7 @@ class RigidGroundSetting(Setting):
         if self.options.small:
             rocking = "small rotation: a'' = -omega^2 [(1 + yg''/g) (theta s - a) + xg''/g]"
             if not self.slope.level:
-                rocking += ", with gravity g cos(i) in the place of g, and xg'' with g sin(i)"
+                rocking += _ON_SLOPE
         return Words(
             equations=[
                 ("full", self._start_words()),
@@ -282,9 +285,8 @@ class SlidingSetting(RigidGroundSetting):
 
     def words(self) -> Words:
         """Describe the block that slides."""
-        base = super().words()
-        slips = "s = sgn(slip')"
-        law = impact_words(self.impact)
+        base, law = super().words(), impact_words(self.impact)
+        slope = "" if self.slope.level else _ON_SLOPE
         onto = (
             "the block lands flat"
             if self.lands_flat
@@ -292,8 +294,8 @@ class SlidingSetting(RigidGroundSetting):
         )
         return Words(
             equations=[
-                ("full", "at rest while |xg''| <= mu_s (g + yg''), and until it tips"),
-                ("full", f"it slides: slip'' = -xg'' - s mu_k (g + yg''), {slips}"),
+                ("full", f"at rest while |xg''| <= mu_s (g + yg''), and until it tips{slope}"),
+                ("full", "it slides: slip'' = -xg'' - s mu_k (g + yg''), s = sgn(slip')" + slope),
                 *((state, words) for state, words in base.equations if state == "left, right"),
                 ("left, right", "the corner slips: I a'' = N (l + s mu_k l'), where friction at "
                  "the held corner would have to be above mu_s N"),
