@@ -170,11 +170,13 @@ class Declared(Generic[PublicValue, Accepted, Default]):
 
 def checked_si(parameter: Declared[Any, Any, Any], value: Any, owner: str) -> Any:
     """Return a number in SI units that is in range; anything else is read as an argument."""
+    has_unit, number = parameter.measure is not None, isinstance(value, float) and parameter.single
     holds: Any = isfinite if parameter.condition is None else parameter.condition.holds
-    if isinstance(value, float | CaseArray) and holds(value):
+    if (isinstance(value, CaseArray) or (has_unit and number)) and holds(value):
         return value
-    plain = isinstance(value, str) or parameter.measure is None
-    return parameter.read(value if plain else parameter.write(value), owner)
+    point = isinstance(value, tuple)
+    written = has_unit and not isinstance(value, str) and (parameter.single or point)
+    return parameter.read(parameter.write(value) if written else value, owner)
 
 
 class Parameter(Declared[Quantity, QuantityLike, Default]):
