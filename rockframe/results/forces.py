@@ -270,6 +270,11 @@ def friction_words(scalars: Mapping[str, AnyArray | float], checks: Sequence[Sli
     return f" Friction needed: {peak:.3g}, {level} for {duration:.3g} s in all."
 
 
+def sliding_cautions(checks: Sequence[SlidingCheck]) -> list[str]:
+    """Return a caution for each base that has less friction than a run needs."""
+    return [f"{one.body} {one.words}; the model holds it" for one in checks if one.slides]
+
+
 def share_words(would_slide: AnyArray, *, runs: str = "runs") -> str:
     """Say in how many runs of an analysis the block would slide, though its model holds it."""
     slide, hold = count_slides(would_slide)
