@@ -426,15 +426,22 @@ def stack_setting(
     ]
     if faults:
         raise AssemblyError(faults)
-    numbers = load, bodies, tops, offsets, bases, place_links(links, bodies, tops, offsets)
-    held = StackSetting(*numbers)
+    links_in_place = place_links(links, bodies, tops, offsets)
+    held = StackSetting(load, bodies, tops, offsets, bases, links_in_place)
+    return _with_friction(held, standing_on)
+
+
+def _with_friction(held: StackSetting, standing_on: Sequence[Component]) -> StackSetting:
+    """Return the setting of the same bodies with slip where bases have friction."""
+    options, bodies = held.options, held.bodies
+    numbers = held.load, bodies, held.tops, held.offsets, held.bases, held.links
     frictions = [base_friction(base, options) for base in standing_on]
     ground = standing_on[0]
     if len(bodies) == 1 and isinstance(ground, RigidGround):
         (friction,) = frictions
         if friction is None:
             return RestrainedSetting(*numbers)
-        faults = [*sheared_tendon_faults(held), *jamming_faults(load.body, friction.kinetic)]
+        faults = [*sheared_tendon_faults(held), *jamming_faults(held.body, friction.kinetic)]
         if faults:
             raise AssemblyError(faults)
         return SlidingRestrainedSetting(*numbers, (friction,), ground.si.impact)
