@@ -7,7 +7,7 @@ slopes found around it, the interval is halved.
 
 import math
 from bisect import insort
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, field
 from itertools import pairwise
 from typing import Final
@@ -86,10 +86,14 @@ class Side:
             count += as_long and abs(place - middle) <= ROUGH_DISTANCE * length
         return count >= MIN_ROUGH_INTERVALS
 
+    def intervals(self) -> Iterator[tuple[float, float]]:
+        """Return the ends of all intervals, from near to far."""
+        return pairwise(self.places)
+
     def flip(self) -> tuple[float, float] | None:
         """Return the first interval at whose far end the verdict differs from that at 0."""
         verdict = self.shown[0.0].overturned
-        for near, far in pairwise(self.places):
+        for near, far in self.intervals():
             if self.shown[far].overturned != verdict:
                 return near, far
         return None
@@ -174,7 +178,7 @@ def _nearest_doubtful_interval(
     """Return the nearest interval, up to an end, in which the verdict might change to and fro."""
     intervals: list[_Task] = []
     for side, other in zip(sides, reversed(sides), strict=True):
-        for number, (near, far) in enumerate(pairwise(side.places)):
+        for number, (near, far) in enumerate(side.intervals()):
             if near >= end or side.shown[far].overturned != side.shown[0.0].overturned:
                 break
             if _is_wide(near, far, resolution) and may_change_between(side, number, other):
