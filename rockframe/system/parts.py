@@ -248,7 +248,7 @@ class Parts:
         slots = dict(self.filled)
         if slot not in slots:
             known = ", ".join(map(repr, slots))
-            near = did_you_mean(slot, slots) or ";"
+            near = did_you_mean(slot, slots) or "."
             msg = f"the scene has no part {short_repr(slot)}{near} It has {known}"
             raise LabelError(msg)
         return cast("Component", slots[slot])
