@@ -3,7 +3,7 @@
 import json
 import math
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 from functools import cached_property
 from typing import Final, Literal, TypeAlias
 
@@ -105,17 +105,13 @@ class Response:
 
     def summary(self) -> RunSummary:
         """Return the summary of the run that certificates are made from."""
-        share = peak_share(self.trajectory, self.system.setting.overturning_angles)
-        summary = run_summary(
-            self.trajectory, self.events, share, self.plan.duration, in_motion=self.in_motion
-        )
-        sliding_checks = self.outputs.sliding_checks
-        slides = (
-            float(any(check.slides for check in sliding_checks)) if sliding_checks else math.nan
-        )
-        slips = self.system.setting.slips_of(self.trajectory.ending)
-        slip = max((slip_range.peak for slip_range in slips), default=math.nan)
-        return replace(summary, slides=slides, slip=slip)
+        run, setting, checks = self.trajectory, self.system.setting, self.outputs.sliding_checks
+        slips = [slip.peak for slip in setting.slips_of(run.ending)]
+        return run_summary(
+            run, self.events, peak_share(run, setting.overturning_angles), self.plan.duration,
+            in_motion=self.in_motion, slip=max(slips, default=math.nan),
+            slides=float(any(check.slides for check in checks)) if checks else math.nan,
+        )  # fmt: skip
 
     def cautions(self) -> list[Caution]:
         """Return the warnings about the run."""
