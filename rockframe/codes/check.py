@@ -8,7 +8,7 @@ from rockframe.measures.common import check_not_empty
 from rockframe.motion import GroundMotion
 from rockframe.simulation.system import System
 from rockframe.system.rigid_ground import RigidGroundSetting
-from rockframe.system.sliding_stack import RestrainedSetting
+from rockframe.system.stack import RestrainedSetting
 from rockframe.units import QuantityLike
 
 

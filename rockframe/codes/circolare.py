@@ -23,7 +23,7 @@ from rockframe.simulation.system import System
 from rockframe.suggestions import with_hints
 from rockframe.suites import TargetSpectrum
 from rockframe.system.rigid_ground import RigidGroundSetting
-from rockframe.system.sliding_stack import RestrainedSetting
+from rockframe.system.stack import RestrainedSetting
 from rockframe.units import (
     POSITIVE,
     TIME,

@@ -61,11 +61,11 @@ class OneOf:
         taken = [way for way in self.ways if values.get(way[0]) is not None]
         heads = " or ".join(way[0] for way in self.ways)
         pair = len(self.ways) == 2
-        if len(taken) > 1 and not self.required:
-            msg = f"{owner}: give {heads}, not both; one follows from the other"
-            raise ComponentError(msg)
         if len(taken) > 1:
-            msg = f"{owner}: give {heads}; {'both were' if pair else 'several were'} given"
+            found = f"; {'both' if pair else 'several'} were given"
+            if not self.required:
+                found = ", not both; one follows from the other"
+            msg = f"{owner}: give {heads}{found}"
             raise ComponentError(msg)
         if self.required and not taken:
             msg = f"{owner}: give {heads}; {'neither' if pair else 'none'} was given"
@@ -73,10 +73,8 @@ class OneOf:
         for way in self.ways:
             present = [name for name in way if values.get(name) is not None]
             if 0 < len(present) < len(way):
-                found = (
-                    f"only {' and '.join(present)} {'was' if len(present) == 1 else 'were'} given"
-                )
-                msg = f"{owner}: {' and '.join(way)} go together; {found}"
+                given = f"{' and '.join(present)} {'was' if len(present) == 1 else 'were'}"
+                msg = f"{owner}: {' and '.join(way)} go together; only {given} given"
                 raise ComponentError(msg)
 
     def displaced(self, changes: Mapping[str, object]) -> frozenset[str]:

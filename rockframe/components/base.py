@@ -7,7 +7,6 @@ from textwrap import fill
 from typing import Any, ClassVar, Final, Generic, Self, dataclass_transform
 
 from rockframe.arguments import checked_list, checked_mapping
-from rockframe.case_arrays import CaseArray, isfinite
 from rockframe.components.alternatives import OneOf, changed_arguments
 from rockframe.components.parameters import (
     REQUIRED,
@@ -19,6 +18,7 @@ from rockframe.components.parameters import (
     Ratio,
     SIValues,
     Text,
+    checked_si,
 )
 from rockframe.errors import (
     ArgumentError,
@@ -391,13 +391,7 @@ class Component(Immutable, Generic[Numbers]):
         changed = {**vars(self.given), **removed, **values}
         owner = self._owner(changed)
         for name, value in values.items():
-            parameter = self._declared[name]
-            holds: Any = isfinite if parameter.condition is None else parameter.condition.holds
-            if not isinstance(value, float | CaseArray) or not holds(value):
-                # raises the error for a wrong value
-                plain = isinstance(value, str) or parameter.measure is None
-                written = value if plain else parameter.write(value)
-                changed[name] = parameter.read(written, owner)
+            changed[name] = checked_si(self._declared[name], value, owner)
         part = object.__new__(type(self))
         part._check(changed, owner)
         part._set_values(changed)

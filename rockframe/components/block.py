@@ -4,17 +4,23 @@ from collections.abc import Collection, Mapping
 from typing import Any, ClassVar, Final, Self, cast
 
 from rockframe.arguments import checked_mapping
-from rockframe.case_arrays import hypot
 from rockframe.components.alternatives import OneOf
 from rockframe.components.base import Component
 from rockframe.components.block_numbers import (
     BlockSI,
-    check_centre_of_mass,
-    check_representable,
+    block_numbers,
     inertia_warnings,
     width_from_radius,
 )
-from rockframe.components.parameters import DERIVED, Declared, Derived, Parameter, Ratio, SIValues
+from rockframe.components.parameters import (
+    DERIVED,
+    Declared,
+    Derived,
+    Parameter,
+    Ratio,
+    SIValues,
+    checked_si,
+)
 from rockframe.components.shapes import outline, parts
 from rockframe.errors import ComponentError, ModelWarning, short_repr, warn
 from rockframe.notebook import Polygon, rectangle
@@ -35,9 +41,6 @@ from rockframe.units import (
     to_ratio,
     to_si,
 )
-
-SOLID_RECTANGLE_SHAPE_FACTOR = 3.0
-"""mu of a solid rectangle: I_O = m (B^2 + H^2)/12 = m R0^2/3."""
 
 _SIZES: Final = frozenset({"width", "height", "mass"})
 """Parameters on which a moment of inertia depends."""
@@ -282,13 +285,13 @@ class Block(Component[BlockSI]):
         """
         example = "{'width': 0.8}"
         values = checked_mapping(values, owner="Block.with_si", name="values", example=example)
-        sizes = {name: values[name] for name in _SIZE_PARAMETERS if name in values}
+        sizes = {
+            name: checked_si(parameter, values[name], type(self).__name__)
+            for name, parameter in _SIZE_PARAMETERS.items()
+            if name in values
+        }
         if not sizes:
             return super().with_si(values)
-        for name, value in sizes.items():
-            if not POSITIVE.holds(value):
-                parameter = _SIZE_PARAMETERS[name]
-                parameter.read(parameter.write(value), type(self).__name__)
         others = {name: value for name, value in values.items() if name not in _SIZE_PARAMETERS}
         return super().with_si({**others, **self._width_and_height(sizes, others)})
 
@@ -345,29 +348,15 @@ class Block(Component[BlockSI]):
         return tuple(unchanged)
 
     def _numbers(self, numbers: SIValues) -> BlockSI:
-        owner = type(self).__name__
-        height = 0.5 * numbers.height if numbers.centre_height is None else numbers.centre_height
-        eccentricity = 0.0 if numbers.eccentricity is None else numbers.eccentricity
-        check_centre_of_mass(numbers.width, numbers.height, height, eccentricity, owner)
-        diagonal = hypot(numbers.width, 2.0 * height)
-        mu: float = numbers.shape_factor or SOLID_RECTANGLE_SHAPE_FACTOR
-        if numbers.inertia is not None:
-            mu = numbers.mass * diagonal * (diagonal / (4.0 * numbers.inertia))
-        elif numbers.shape_factor is None and height != 0.5 * numbers.height:
-            # the inertia of the solid rectangle by default
-            full_diagonal = hypot(numbers.width, numbers.height)
-            mu *= (diagonal / full_diagonal) ** 2
-        si = BlockSI(numbers.width, numbers.height, numbers.mass, mu, height, eccentricity)
-        check_representable(si, owner)
-        return si
+        return block_numbers(numbers, type(self).__name__)
 
     def _cautions(self) -> list[str]:
-        return [*super()._cautions(), *self._inertia_cautions()]
+        given = self.given.shape_factor is not None or self.given.inertia is not None
+        return [*super()._cautions(), *(self._inertia_cautions() if given else [])]
 
     def _inertia_cautions(self) -> list[str]:
         """Warn of a given inertia that no body within the rectangle can have."""
-        stated = self.given.shape_factor is not None or self.given.inertia is not None
-        return inertia_warnings(self.si) if stated else []
+        return inertia_warnings(self.si)
 
     def _shapes(self) -> list[Polygon]:
         si = self.si

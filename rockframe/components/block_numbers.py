@@ -5,9 +5,12 @@ from dataclasses import dataclass, field
 from typing import Any, Final
 
 from rockframe.case_arrays import atan2, cos, hypot, sqrt
+from rockframe.components.parameters import SIValues
 from rockframe.constants import STANDARD_GRAVITY
 from rockframe.errors import ComponentError
 
+SOLID_RECTANGLE_SHAPE_FACTOR: Final = 3.0
+"""mu of a solid rectangle: I_O = m (B^2 + H^2)/12 = m R0^2/3."""
 _ROUNDING: Final = 1e-9
 _PERCENT: Final = 0.01
 
@@ -97,29 +100,33 @@ def maximum_restitutions(body: BodyGeometry) -> tuple[float, float]:
     return ratio / onto_left, ratio / onto_right
 
 
-def check_centre_of_mass(
-    width: float, height: float, centre_height: float, eccentricity: float, owner: str
-) -> None:
-    """Refuse a centre of mass that is not above the base, within the height."""
-    if centre_height < height and abs(eccentricity) < 0.5 * width:
-        return
-    msg = (
-        f"{owner}: the centre of mass, {centre_height:.6g} m above the base and "
-        f"{eccentricity:.6g} m to the right of its middle, is not within {height:.6g} m of height "
-        f"and {0.5 * width:.6g} m to both sides"
-    )
-    raise ComponentError(msg)
-
-
-def check_representable(si: BlockSI, owner: str) -> None:
-    """Refuse sizes whose moment of inertia overflows, or vanishes."""
-    if 0.0 < si.inertia < math.inf and 0.0 < si.shape_factor < math.inf:
-        return
-    msg = (
-        f"{owner}: a block of {si.width:.4g} m by {si.height:.4g} m and {si.mass:.4g} kg has a "
-        "moment of inertia out of the range of floating-point numbers"
-    )
-    raise ComponentError(msg)
+def block_numbers(given: SIValues, owner: str) -> BlockSI:
+    """Return the numbers of a block from its parameters; refuse those of no body."""
+    width, height, mass, inertia = given.width, given.height, given.mass, given.inertia
+    centre = 0.5 * height if given.centre_height is None else given.centre_height
+    eccentricity = 0.0 if given.eccentricity is None else given.eccentricity
+    if not (centre < height and abs(eccentricity) < 0.5 * width):
+        msg = (
+            f"{owner}: the centre of mass, {centre:.6g} m above the base and {eccentricity:.6g} m "
+            f"to the right of its middle, is not within {height:.6g} m of height and "
+            f"{0.5 * width:.6g} m to both sides"
+        )
+        raise ComponentError(msg)
+    diagonal = hypot(width, 2.0 * centre)
+    mu: float = given.shape_factor or SOLID_RECTANGLE_SHAPE_FACTOR
+    if inertia is not None:
+        mu = mass * diagonal * (diagonal / (4.0 * inertia))
+    elif given.shape_factor is None and centre != 0.5 * height:
+        # the inertia of the solid rectangle by default
+        mu *= (diagonal / hypot(width, height)) ** 2
+    si = BlockSI(width, height, mass, mu, centre, eccentricity)
+    if not (0.0 < si.inertia < math.inf and 0.0 < mu < math.inf):
+        msg = (
+            f"{owner}: a block of {width:.4g} m by {height:.4g} m and {mass:.4g} kg has a moment "
+            "of inertia out of the range of floating-point numbers"
+        )
+        raise ComponentError(msg)
+    return si
 
 
 def squat_body_warnings(si: BlockSI, owner: str) -> list[str]:
@@ -169,10 +176,7 @@ def _is_about_corner(si: BlockSI) -> bool:
 
 
 def width_from_radius(owner: str, radius: Any, slenderness: Any, centre_height: Any = None) -> Any:
-    """Return the width [m] of a block by R0 [m] and H/B; `owner` is named in messages.
-
-    The centre of mass is at half the height, unless its height above the base is given [m].
-    """
+    """Return the width of a block [m] by R0, H/B and the height of its centre, if it is not H/2."""
     if centre_height is None:
         return 2.0 * radius / hypot(1.0, slenderness)
     if radius > centre_height:

@@ -12,6 +12,7 @@ from enum import StrEnum
 from typing import Any, Final
 
 from rockframe.arguments import checked_choice, is_iterable
+from rockframe.components.base import Component
 from rockframe.components.frame_members import Member, MemberSI
 from rockframe.components.frame_regular import INFILL_THICKNESS, SLAB_THICKNESS, RegularFrame
 from rockframe.components.shapes.standing import (
@@ -211,20 +212,37 @@ def make_building(
         assumed_centre = checked_choice(
             CentreOfMass, centre_of_mass, owner=owner, name="centre_of_mass"
         )
+    arguments: dict[str, float | str]
     if members is None:
-        building = _regular_building(dimensions, owner, assumed_centre)
+        frame = _regular_frame(dimensions, owner)
+        width, height, depth = frame.si.width, frame.si.height, frame.si.depth
+        built, arguments = frame.members, _without_type(frame)
     else:
-        building = _building_of_members(members, dimensions, owner, assumed_centre)
+        width, height, depth = _outer_sizes(dimensions, owner)
+        if isinstance(members, str | Member | Mapping) or not is_iterable(members):
+            msg = f"{owner}: members must be a list of Member, got {short_repr(members)}"
+            raise ComponentError(msg)
+        built = tuple(_member(entry, k, owner) for k, entry in enumerate(members))
+        sizes = {"width": width, "height": height, "depth": depth}
+        arguments = {name: quantity_text(value, LENGTH) for name, value in sizes.items() if value}
+        arguments["members"] = json.dumps([_without_type(member) for member in built])
     if assumed_centre is not default:
-        building.arguments["centre_of_mass"] = str(assumed_centre)
+        arguments["centre_of_mass"] = str(assumed_centre)
+    building = Building(
+        members=built, width=width, height=height, depth=depth, arguments=arguments,
+        assumed_centre=assumed_centre,
+    )  # fmt: skip
     building.check(owner)
     return building
 
 
-def _regular_building(
-    dimensions: Mapping[str, Any], owner: str, assumed_centre: CentreOfMass
-) -> Building:
-    """Make the building of a regular frame."""
+def _without_type(part: Component) -> dict[str, float | str]:
+    """Return the description of a part without its class."""
+    return {name: value for name, value in part.to_dict().items() if name != "type"}
+
+
+def _regular_frame(dimensions: Mapping[str, Any], owner: str) -> RegularFrame:
+    """Make a regular frame; refuse one whose dimensions are not complete."""
     needed = ["column_width", "beam_height", "beam_width", "density"]
     if dimensions.get("storey_heights") is None:
         needed = ["storeys", "height", *needed]
@@ -235,19 +253,11 @@ def _regular_building(
             f"{', '.join(missing)} {'is' if len(missing) == 1 else 'are'} missing"
         )
         raise ComponentError(msg)
-    frame = RegularFrame(**dimensions)
-    si = frame.si
-    arguments = {name: value for name, value in frame.to_dict().items() if name != "type"}
-    return Building(
-        members=frame.members, width=si.width, height=si.height, depth=si.depth,
-        arguments=arguments, assumed_centre=assumed_centre,
-    )  # fmt: skip
+    return RegularFrame(**dimensions)
 
 
-def _building_of_members(
-    members: object, dimensions: Mapping[str, Any], owner: str, assumed_centre: CentreOfMass
-) -> Building:
-    """Make a building from a list of members and its outer dimensions."""
+def _outer_sizes(dimensions: Mapping[str, Any], owner: str) -> tuple[float, float, float | None]:
+    """Return width, height and depth of a building of members [m]; refuse other dimensions."""
     excluded = [
         name
         for name, value in dimensions.items()
@@ -266,21 +276,7 @@ def _building_of_members(
         return to_si(dimensions.get(name), LENGTH, owner=owner, name=name, condition=POSITIVE)
 
     depth = None if dimensions.get("depth") is None else length("depth")
-    width, height = length("width"), length("height")
-    if isinstance(members, str | Member | Mapping) or not is_iterable(members):
-        msg = f"{owner}: members must be a list of Member, got {short_repr(members)}"
-        raise ComponentError(msg)
-    built = tuple(_member(entry, k, owner) for k, entry in enumerate(members))
-    written = [
-        {word: value for word, value in member.to_dict().items() if word != "type"}
-        for member in built
-    ]
-    sizes = {"width": width, "height": height, "depth": depth}
-    arguments = {name: quantity_text(value, LENGTH) for name, value in sizes.items() if value}
-    return Building(
-        members=built, width=width, height=height, depth=depth, assumed_centre=assumed_centre,
-        arguments={**arguments, "members": json.dumps(written)},
-    )  # fmt: skip
+    return length("width"), length("height"), depth
 
 
 def _member(entry: object, number: int, owner: str) -> Member:

@@ -21,6 +21,7 @@ from typing import (
 import numpy as np
 
 from rockframe.arguments import checked_bool, checked_choice
+from rockframe.case_arrays import CaseArray, isfinite
 from rockframe.errors import AccessError, ComponentError, short_repr
 from rockframe.suggestions import with_hints
 from rockframe.units import (
@@ -165,6 +166,17 @@ class Declared(Generic[PublicValue, Accepted, Default]):
     def caution(self, value: Any) -> str | None:
         """Return a text on an unusual value, None for a usual one."""
         return None
+
+
+def checked_si(parameter: Declared[Any, Any, Any], value: Any, owner: str) -> Any:
+    """Return a number in SI units that is in range; anything else is read as an argument."""
+    has_unit, number = parameter.measure is not None, isinstance(value, float) and parameter.single
+    holds: Any = isfinite if parameter.condition is None else parameter.condition.holds
+    if (isinstance(value, CaseArray) or (has_unit and number)) and holds(value):
+        return value
+    point = isinstance(value, tuple)
+    written = has_unit and not isinstance(value, str) and (parameter.single or point)
+    return parameter.read(parameter.write(value) if written else value, owner)
 
 
 class Parameter(Declared[Quantity, QuantityLike, Default]):

@@ -1,10 +1,10 @@
-"""Accelerations, reactions, and the friction demand of a body: the friction that holds it.
+"""Accelerations, reactions, and the friction that holds a body, beside that which its base has.
 
 All of them follow from a model's columns, page "Forces and accelerations" of the manual.
 """
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Final
 
@@ -12,8 +12,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rockframe.results.along_steps import AlongSteps, Values
-from rockframe.results.outcome import sines_cosines
+from rockframe.results.outcome import MIN_REPORTED_SLIP, sines_cosines
 from rockframe.signals.arrays import AnyArray, Array
+from rockframe.system.assembly import Assembly
 from rockframe.system.bodies import BaseLoad
 
 ROTATION_ON_CAP: Final = "rotation_on_cap"
@@ -28,6 +29,11 @@ DURATION_SHARE: Final = 0.5
 DURATION_COEFFICIENT: Final = 1.0
 """The duration of the friction demand is the time above half its peak, or above this coefficient
 if that is less: floors seldom have more."""
+FRICTION_DEMAND: Final = "friction_demand"
+SOIL_FRICTION_DEMAND: Final = "soil_friction_demand"
+DIGITS: Final = 3
+MAX_DIGITS: Final = 15
+"""Digits of coefficients in messages: DIGITS, or more where both would look equal."""
 FORCE_TOLERANCE: Final = 1e-10
 """Share of the weight below which a force is rounding; for an impulse, a share of the weight times
 the square root of h/g, h the height of the centre of mass."""
@@ -52,12 +58,12 @@ def friction_demands(values: Values, load: BaseLoad) -> dict[str, AnyArray]:
     """Return the friction demand of the bases, by their names in the schema."""
     least = FORCE_TOLERANCE * load.weight
     demands: dict[str, AnyArray] = {
-        "friction_demand": friction_demand(
+        FRICTION_DEMAND: friction_demand(
             values["horizontal_reaction"], values["vertical_reaction"], least
         )
     }
     if all(name in values for name in SOIL_FRICTION_COLUMNS):
-        demands["soil_friction_demand"] = friction_demand(
+        demands[SOIL_FRICTION_DEMAND] = friction_demand(
             values["base_shear"], values["soil_reaction"], least
         )
     return demands
@@ -79,7 +85,7 @@ def signed_demand(name: str) -> Callable[[Values], Array]:
 
     The magnitude of a thrust that reverses within a step is not linear there.
     """
-    tangential = "base_shear" if name == "soil_friction_demand" else "horizontal_reaction"
+    tangential = "base_shear" if name == SOIL_FRICTION_DEMAND else "horizontal_reaction"
     return lambda values: np.copysign(values[name], values[tangential])
 
 
@@ -103,10 +109,7 @@ class EventStates:
         return EventStates(self.time[selected], self.is_impact[selected], before, after)
 
     def impulses(self, mass: float) -> dict[str, AnyArray]:
-        """Return the impulses of the base on the body at the events [N s].
-
-        Their ratio at an impact on rigid ground is :eq:`eq-impact-friction`.
-        """
+        """Return the impulses of the base on the body at events, :eq:`eq-impact-friction` [N s]."""
         impulses: dict[str, AnyArray] = {}
         for way in ("horizontal", "vertical"):
             on_base = f"{way}_velocity_on_base"  # in a cascade that of the second stage
@@ -133,11 +136,11 @@ def force_peaks(
 ) -> tuple[dict[str, float], dict[str, float]]:
     """Return peaks of forces with times and durations, and the peak settlement, by their names."""
     ((shear, most), (_, when)), ((deepest,), _) = along.each_largest(
-        lambda values: np.stack([np.abs(values["base_shear"]), values["friction_demand"]]),
+        lambda values: np.stack([np.abs(values["base_shear"]), values[FRICTION_DEMAND]]),
         lambda values: _settlement(values, load)[None],
     )
     level = min(DURATION_SHARE * most, DURATION_COEFFICIENT)
-    lasted = along.above(signed_demand("friction_demand"), level)[1] if level > 0.0 else 0.0
+    lasted = along.above(signed_demand(FRICTION_DEMAND), level)[1] if level > 0.0 else 0.0
     fall = math.sqrt(load.body.centre_height / load.options.gravity)
     struck = friction_demand(*events.impulses_on_base(load), FORCE_TOLERANCE * load.weight * fall)
     forces = {
@@ -165,3 +168,144 @@ def _settlement(values: Values, load: BaseLoad) -> Array:
     """Return the settlement of the middle of the base from rest, :eq:`eq-settlement`."""
     rotation, height = values["rotation"], values["vertical_displacement"]
     return load.body.base_settlement(rotation, height, small=load.options.small)
+
+
+@dataclass(frozen=True)
+class SlidingCheck:
+    """Whether a body that the model holds would slide on a base with a given friction."""
+
+    body: str  # name of what stands on the base
+    friction: float  # coefficient of friction that the base has [1]
+    needed: float  # largest friction demand [1]
+    first: float  # time at which the demand first exceeds the coefficient, NaN if never [s]
+    duration: float  # total time for which it does [s]
+
+    @property
+    def slides(self) -> bool:
+        """Whether the demand ever exceeds the coefficient."""
+        return self.needed > self.friction
+
+    @property
+    def words(self) -> str:
+        """The check in words, without the name of the body."""
+        digits, both = DIGITS, (self.needed, self.friction)
+        needed, friction = (f"{one:.{digits}g}" for one in both)
+        while needed == friction and digits <= MAX_DIGITS:
+            digits += 1
+            needed, friction = (f"{one:.{digits}g}" for one in both)
+        slides = f"would slide from {self.first:.4g} s on: needs"
+        if not math.isfinite(self.needed):
+            return (
+                f"{slides} more than any floor has, and more than {friction} for "
+                f"{self.duration:.3g} s in all"
+            )
+        if not self.slides:
+            return f"would not slide: needs {needed} of {friction}"
+        return (
+            f"{slides} {needed} of {friction}, and more than that for {self.duration:.3g} s in all"
+        )
+
+
+def has_friction_limit(system: Assembly) -> bool:
+    """Whether a base has a coefficient of friction that its runs are checked against."""
+    return any(_frictions(system))
+
+
+def sliding_checks(system: Assembly, along: AlongSteps) -> list[SlidingCheck]:
+    """Check for each base with a coefficient of friction whether it holds what stands on it."""
+    return [
+        _sliding(along, name, friction, body)
+        for name, friction, body in _frictions(system)
+        if name in along.shown  # a soil of one's own may not show its reaction
+    ]
+
+
+def _sliding(along: AlongSteps, name: str, friction: float, body: str) -> SlidingCheck:
+    def demand(values: Values) -> Array:
+        return values[name][None]
+
+    (needed,), (when,) = along.largest(demand)
+    first, duration = along.above(signed_demand(name), friction)
+    if needed > friction and math.isnan(first):  # within a step
+        first = when
+    return SlidingCheck(body, friction, float(needed), float(first), duration)
+
+
+def sliding_scalars(checks: Sequence[SlidingCheck]) -> dict[str, float | bool]:
+    """Return the scalars of sliding checks, by their names in the schema; none without a check."""
+    if not checks:
+        return {}
+    slides = [check for check in checks if check.slides]
+    return {
+        "would_slide": bool(slides),
+        "sliding_time": min((check.first for check in slides), default=math.nan),
+        "sliding_duration": max(check.duration for check in checks),
+    }
+
+
+def friction_words(scalars: Mapping[str, AnyArray | float], checks: Sequence[SlidingCheck]) -> str:
+    """Say in a sentence whether bodies would slide or, without a check, what friction they needed.
+
+    Empty for a run without peaks of forces.
+    """
+    if checks:
+        several = len(checks) > 1
+        words = "; ".join(
+            f"{check.body} {check.words}" if several else check.words for check in checks
+        )
+        return f" {words[0].upper()}{words[1:]}."
+    if "peak_friction_demand" not in scalars:
+        return ""
+    peak, when, duration = (
+        float(scalars[f"peak_friction_demand{what}"]) for what in ("", "_time", "_duration")
+    )
+    if not math.isfinite(peak):
+        return (
+            " Friction needed: more than any, where the base is held without pressure "
+            f"(at {when:.4g} s); more than 1 for {duration:.3g} s in all."
+        )
+    if peak == 0.0:
+        return ""
+    level = "more than 1" if peak > 2.0 else "more than half of it"
+    return f" Friction needed: {peak:.3g}, {level} for {duration:.3g} s in all."
+
+
+def sliding_cautions(checks: Sequence[SlidingCheck]) -> list[str]:
+    """Return a caution for each base that has less friction than a run needs."""
+    return [f"{one.body} {one.words}; the model holds it" for one in checks if one.slides]
+
+
+def share_words(would_slide: AnyArray, *, runs: str = "runs") -> str:
+    """Say in how many runs of an analysis the block would slide, though its model holds it."""
+    slide, hold = count_slides(would_slide)
+    some = f"in {slide or 'none'} of {slide + hold} {runs}"
+    return f"{some} the block would slide first" if slide + hold else ""
+
+
+def slip_words(slips: AnyArray, *, runs: str = "runs") -> str:
+    """Say in how many runs of an analysis a body slid, and how far at most."""
+    slid = slips[slips > MIN_REPORTED_SLIP]
+    some = f"in {slid.size} of {np.isfinite(slips).sum()} {runs}"
+    return f"{some} a body slid, by {slid.max():.3g} m at most" if slid.size else ""
+
+
+def count_slides(would_slide: AnyArray) -> tuple[int, int]:
+    """Return how many runs slide and how many do not; NaN counts as neither."""
+    return int((would_slide == 1.0).sum()), int((would_slide == 0.0).sum())
+
+
+def _frictions(system: Assembly) -> Iterator[tuple[str, float, str]]:
+    """Return friction demand, coefficient and body, by name, for each base that holds a body."""
+    parts = system.parts
+    if system.setting.slides:
+        return
+    under = (
+        (parts.ground, FRICTION_DEMAND),
+        (parts.pads, FRICTION_DEMAND),
+        (parts.soil, SOIL_FRICTION_DEMAND if system.setting.stacked else FRICTION_DEMAND),
+    )
+    for part, name in under:
+        friction = None if part is None else getattr(part.si, "friction", None)
+        if friction is not None:
+            body = "the frame" if parts.frame is not None else "the block"
+            yield name, friction, "the cap" if name == SOIL_FRICTION_DEMAND else body

@@ -179,12 +179,11 @@ def event_columns(model: ContactModel, run: Trajectory) -> dict[str, AnyArray]:
         for body, name in enumerate(model.contacts)
         for when, modes in (("before", events.mode_before), ("after", events.mode_after))
     }
+    overturned = np.isin(events.kind, (OVERTURNING, TOPPLED))  # of the highest body, by no link
     if model.shows_bodies:
-        highest = np.isin(events.kind, (OVERTURNING, TOPPLED))
         of_event = events.memory[:, model.memory.index("body_of_event")]
-        contacts["event_body"] = np.where(highest, 1, of_event).astype(int)[shown]
+        contacts["event_body"] = np.where(overturned, 1, of_event).astype(int)[shown]
     if model.links:
-        overturned = np.isin(events.kind, (OVERTURNING, TOPPLED))
         of_event = events.memory[:, model.memory.index("link_of_event")]
         contacts["event_restrainer"] = np.where(overturned, 0, of_event).astype(int)[shown]
     return {

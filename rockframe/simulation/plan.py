@@ -20,13 +20,12 @@ from rockframe.dynamics.protocol import Ending, Start
 from rockframe.errors import AssemblyError, ComponentError, RockframeError, did_you_mean, short_repr
 from rockframe.motion import GroundMotion, HorizontalPair
 from rockframe.results.diagnostics import DIAGNOSTICS, Diagnostic
-from rockframe.results.forces import SOIL_FRICTION_COLUMNS
+from rockframe.results.forces import SOIL_FRICTION_COLUMNS, has_friction_limit
 from rockframe.results.outcome import verdict_of
 from rockframe.results.points import BodyPoint
 from rockframe.results.schema import ENERGIES, GROUPS, ON_REQUEST, SCHEMA, SCHEMA_VERSION
 from rockframe.results.variables.requests import POINT_TIME
 from rockframe.results.variables.variable import TIME as OVER_TIME
-from rockframe.simulation.friction_checks import has_friction_limit
 from rockframe.simulation.run_arguments import PROVED, Certification, RunArguments
 from rockframe.solve.accuracy import Accuracy, AccuracyLevel, accuracy_of
 from rockframe.solve.bookkeeping import SAMPLE_TOLERANCE
@@ -59,10 +58,7 @@ def outputs_as_list(outputs: object) -> list[object]:
 def read_outputs(
     outputs: object, points: object, faults: list[str]
 ) -> tuple[tuple[str, ...], tuple[Diagnostic, ...]]:
-    """Read the argument ``outputs``: names of variables, groups and diagnostics.
-
-    Gives variables and diagnostics, each in the order of their tables; unknown names become faults.
-    """
+    """Read ``outputs``: give variables and diagnostics in the order of their tables."""
     names: set[str] = set()
     diagnostics: set[str] = set()
     for value in outputs_as_list(outputs):

@@ -42,11 +42,12 @@ def motion_attributes(motion: GroundMotion | None) -> dict[str, str | float | in
     """Return attributes by which a motion can be recognised and, where possible, rebuilt."""
     if motion is None:
         return {"motion": "none"}
+    numbers = motion.si
     return {
         "motion": motion.name,
-        "motion_sha256": motion.sha256,
-        "motion_time_step": motion.si.time_step,
-        "motion_samples": len(motion),
+        "motion_sha256": numbers.digest,
+        "motion_time_step": numbers.time_step,
+        "motion_samples": int(numbers.horizontal.samples.size),
         "motion_json": json.dumps(motion.to_dict()),
         "motion_history": _HISTORY_SEPARATOR.join(motion.history),
     }

@@ -2,8 +2,8 @@
 
 import json
 import math
-from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass, field, replace
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, field
 from functools import cached_property
 from typing import Final, Literal, TypeAlias
 
@@ -14,7 +14,7 @@ from rockframe.compiled import compiling_for
 from rockframe.dynamics.chain.rigid import RigidChain
 from rockframe.errors import ModelWarning, RockframeWarning, SolverWarning, warn
 from rockframe.motion import GroundMotion
-from rockframe.proof.verdict import Proof
+from rockframe.results.forces import friction_words, sliding_cautions
 from rockframe.results.outcome import (
     broken_links,
     event_columns,
@@ -24,13 +24,12 @@ from rockframe.results.outcome import (
     slope_attributes,
     verdict,
 )
-from rockframe.results.schema import build_dataset, schema_row
+from rockframe.results.schema import Results, build_dataset, schema_row
 from rockframe.results.variables.runs import Direction
 from rockframe.signals.arrays import AnyArray
 from rockframe.simulation.certify.certificate import certify
 from rockframe.simulation.certify.run_summary import RunSummary, run_summary
 from rockframe.simulation.certify.second_look import doubts, peak_error, second_look
-from rockframe.simulation.friction_checks import friction_words, sliding_cautions
 from rockframe.simulation.plan import END_STATE, Plan, ending_as_json, start_of
 from rockframe.simulation.provenance import motion_after_end, motion_attributes
 from rockframe.simulation.run_arguments import PROVED, Certification
@@ -106,17 +105,13 @@ class Response:
 
     def summary(self) -> RunSummary:
         """Return the summary of the run that certificates are made from."""
-        share = peak_share(self.trajectory, self.system.setting.overturning_angles)
-        summary = run_summary(
-            self.trajectory, self.events, share, self.plan.duration, in_motion=self.in_motion
-        )
-        sliding_checks = self.outputs.sliding_checks
-        slides = (
-            float(any(check.slides for check in sliding_checks)) if sliding_checks else math.nan
-        )
-        slips = self.system.setting.slips_of(self.trajectory.ending)
-        slip = max((slip_range.peak for slip_range in slips), default=math.nan)
-        return replace(summary, slides=slides, slip=slip)
+        run, setting, checks = self.trajectory, self.system.setting, self.outputs.sliding_checks
+        slips = [slip.peak for slip in setting.slips_of(run.ending)]
+        return run_summary(
+            run, self.events, peak_share(run, setting.overturning_angles), self.plan.duration,
+            in_motion=self.in_motion, slip=max(slips, default=math.nan),
+            slides=float(any(check.slides for check in checks)) if checks else math.nan,
+        )  # fmt: skip
 
     def cautions(self) -> list[Caution]:
         """Return the warnings about the run."""
@@ -136,10 +131,7 @@ class Response:
             [], _SEPARATION_CHECK, missing,
         )  # fmt: skip
         sliding = compute_or_note(
-            lambda: list(sliding_cautions(self.outputs.sliding_checks)),
-            [],
-            _FRICTION_CHECK,
-            missing,
+            lambda: sliding_cautions(self.outputs.sliding_checks), [], _FRICTION_CHECK, missing
         )
         _ = self.scalars  # computed first: what fails is added to `missing`
         cut_off = [] if summary.status.finished else [verdict(summary, setting, self.system.model)]
@@ -170,23 +162,6 @@ def run_scalars(
     return values
 
 
-@dataclass(frozen=True)
-class _Labels:
-    """Values, attributes and cautions that become the dataset of a run."""
-
-    values: Mapping[str, AnyArray | float | int | bool]
-    attributes: Mapping[str, str | float | int]
-    cautions: Sequence[Caution] = ()
-
-    def __or__(self, other: "_Labels") -> "_Labels":
-        """Return all of these, and those of another analysis of the run."""
-        return _Labels(
-            {**self.values, **other.values},
-            {**self.attributes, **other.attributes},
-            [*self.cautions, *other.cautions],
-        )
-
-
 def run(
     system: Assembly,
     plan: Plan,
@@ -204,25 +179,39 @@ def run(
         lambda: system.cautions, [], "what is unusual about the scene", missing
     )
     cautions, before = response.cautions(), len(missing)
-    labels = _Labels({**response.events, **response.scalars}, attributes, cautions)
+    values = {**response.events, **response.scalars}
     if repeat_run and certification is None and plan.accuracy == LEVELS[AccuracyLevel.FAST]:
-        labels |= _second_look(response)
+        values["peak_error_estimate"], doubted = _second_look(response)
+        cautions += [(SolverWarning, text) for text in doubted]
     if proof is not None:
-        labels |= _proof_labels(proof, response)
-    for kind, text in labels.cautions:
+        overturned, end_time = response.summary().overturned, response.trajectory.end_time
+        frequency = system.setting.body.frequency_at(system.setting.gravity)
+        values |= proof.values(overturned, end_time)
+        attributes |= proof.attributes()
+        objections = proof.objections(overturned, end_time, frequency)
+        cautions += [(SolverWarning, text) for text in objections]
+    for kind, text in cautions:
         warn(text, kind)
     if isinstance(certification, Certification):
-        labels |= _certificate_labels(certification, response)
-    dataset = _dataset(labels, response)
+        certificate = compute_or_note(
+            lambda: certify(system, plan, response.summary(), certification, compute_summary),
+            None, "the certificate", missing,
+        )  # fmt: skip
+        if certificate is None:
+            attributes["certificate"] = "Not known."
+        else:
+            values |= certificate.values()
+            attributes |= certificate.attributes()
+    dataset = _dataset(values, attributes, response)
     late = missing[before:]
     for text in late:
         warn(text, SolverWarning)
-    every = [*of_scene, *(text for _, text in labels.cautions), *late]
+    every = [*of_scene, *(text for _, text in cautions), *late]
     dataset.attrs["cautions"] = "; ".join(every) or NONE
     return dataset
 
 
-def _second_look(response: Response) -> _Labels:
+def _second_look(response: Response) -> tuple[float, list[str]]:
     """Return the error of the peak from a second run with more steps, and the doubts it raises."""
     system, plan, run = response.system, response.plan, response.trajectory
 
@@ -230,44 +219,22 @@ def _second_look(response: Response) -> _Labels:
         second = compute_response(system, second_look(system, plan)).trajectory
         return peak_error(run, second), list(doubts(system.setting, plan, run, second))
 
-    error, doubted = compute_or_note(found, (math.nan, []), _REPEATED_RUN, response.missing)
-    cautions: list[Caution] = [(SolverWarning, text) for text in doubted]
-    return _Labels({"peak_error_estimate": error}, {}, cautions)
+    return compute_or_note(found, (math.nan, []), _REPEATED_RUN, response.missing)
 
 
-def _proof_labels(proof: Proof, response: Response) -> _Labels:
-    """Return the proved verdict, and how the run differs from it."""
-    setting, end_time = response.system.setting, response.trajectory.end_time
-    overturned = response.summary().overturned
-    frequency = setting.body.frequency_at(setting.gravity)
-    objections = proof.objections(overturned, end_time, frequency)
-    cautions: list[Caution] = [(SolverWarning, text) for text in objections]
-    return _Labels(proof.values(overturned, end_time), proof.attributes(), cautions)
-
-
-def _certificate_labels(certification: Certification, response: Response) -> _Labels:
-    """Return the certificate of a run."""
-    system, plan = response.system, response.plan
-    certificate = compute_or_note(
-        lambda: certify(system, plan, response.summary(), certification, compute_summary),
-        None, "the certificate", response.missing,
-    )  # fmt: skip
-    if certificate is None:
-        return _Labels({}, {"certificate": "Not known."})
-    return _Labels(certificate.values(), certificate.attributes())
-
-
-def _dataset(labels: _Labels, response: Response) -> xr.Dataset:
+def _dataset(
+    values: Results, attributes: Mapping[str, str | float | int], response: Response
+) -> xr.Dataset:
     """Return the dataset of a run; without what follows from its samples if that fails."""
-    attributes, outputs, motion = labels.attributes, response.outputs, response.plan.motion
+    outputs, motion = response.outputs, response.plan.motion
     of_samples = {**outputs.values, **outputs.points}
     dataset = compute_or_note(
         lambda: build_dataset(
-            {**labels.values, **of_samples, **motion_after_end(motion, of_samples)}, attributes
+            {**values, **of_samples, **motion_after_end(motion, of_samples)}, attributes
         ),
         None, _SAMPLED_OUTPUTS, response.missing,
     )  # fmt: skip
-    return build_dataset(labels.values, attributes) if dataset is None else dataset
+    return build_dataset(values, attributes) if dataset is None else dataset
 
 
 def compute_summary(system: Assembly, plan: Plan) -> RunSummary:

@@ -18,10 +18,13 @@ from rockframe.results.forces import (
     SETTLEMENT_COLUMNS,
     SOIL_FRICTION_COLUMNS,
     EventStates,
+    SlidingCheck,
     force_histories,
     force_peaks,
     friction_demands,
     residual_values,
+    sliding_checks,
+    sliding_scalars,
 )
 from rockframe.results.outcome import (
     body_histories,
@@ -38,7 +41,6 @@ from rockframe.results.schema import ENERGIES, ON_REQUEST, SCHEMA, checked_resul
 from rockframe.results.variables.variable import EVENT, TIME
 from rockframe.signals.arrays import AnyArray, Array
 from rockframe.signals.motion import Incline
-from rockframe.simulation.friction_checks import SlidingCheck, sliding_checks, sliding_scalars
 from rockframe.simulation.plan import Plan
 from rockframe.solve.observe import memory_at_outputs, observe_run, observe_states
 from rockframe.solve.trajectory import Trajectory
@@ -78,10 +80,7 @@ def ground_at(motion: GroundMotion | None, time: Array) -> Array:
 def compute_outputs(
     system: Assembly, plan: Plan, run: Trajectory, missing: list[str]
 ) -> RunOutputs:
-    """Return what follows from the samples of a run: histories, if they are kept, peaks and points.
-
-    What cannot be computed is named in `missing`.
-    """
+    """Return what follows from the samples of a run; what cannot be computed is in `missing`."""
     setting, load, model = system.setting, system.setting.load, system.model
     observed = _ObservedRun(system, plan, run)
     values, until_overturning = observed.histories(), observed.events

@@ -13,12 +13,12 @@ from rockframe.arguments import checked_integer
 from rockframe.components import InitialState
 from rockframe.errors import ComponentError, SolverWarning, warn
 from rockframe.motion import GroundMotion
+from rockframe.results.forces import has_friction_limit
 from rockframe.results.schema import build_dataset, with_variables
 from rockframe.results.variables.studies import Outcome
 from rockframe.shared_arguments import with_shared_arguments
 from rockframe.signals.motion import extrema_of
 from rockframe.simulation.certify.run_summary import RunSummary
-from rockframe.simulation.friction_checks import has_friction_limit
 from rockframe.simulation.plan import Plan, plan_run
 from rockframe.simulation.provenance import motion_attributes
 from rockframe.simulation.run import compute_summary, run

@@ -21,12 +21,12 @@ from rockframe.errors import (
     short_repr,
     warn,
 )
+from rockframe.results.forces import share_words, slip_words
 from rockframe.results.outcome import overturns
 from rockframe.results.schema import with_labels, with_variables
 from rockframe.results.variables.studies import CASE, MOTION
 from rockframe.shared_arguments import with_shared_arguments
 from rockframe.signals.arrays import AnyArray, Array
-from rockframe.simulation.friction_checks import share_words, slip_words
 from rockframe.simulation.system import System
 from rockframe.studies.intensities import Intensity, intensity_of_runs, measure_attributes
 from rockframe.studies.limit_states import (

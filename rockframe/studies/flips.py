@@ -9,10 +9,10 @@ from typing import Final
 
 import numpy as np
 
+from rockframe.results.forces import share_words, slip_words
 from rockframe.results.outcome import enumeration
 from rockframe.simulation.certify.run_summary import RunSummary
 from rockframe.simulation.certify.scan import Side, may_change_between
-from rockframe.simulation.friction_checks import share_words, slip_words
 
 MIN_INTERVAL: Final = 0.002
 """Length of an interval of scales, over its far end, that is not halved to find hidden flips."""

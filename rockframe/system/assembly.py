@@ -15,11 +15,8 @@ from rockframe.system.block_on_cap import (
     CoupledSetting,
     SlidingCoupledSetting,
 )
-from rockframe.system.bodies import BaseLoad, block_with_cap, load_of
+from rockframe.system.bodies import NO_SLIP, BaseLoad, block_with_cap, load_of
 from rockframe.system.compatibility import (
-    NO_SLIP,
-    SLIDING_AT_SMALL_ROTATION,
-    base_friction,
     combination_faults,
     depth_cautions,
     outside_point_cautions,
@@ -27,6 +24,7 @@ from rockframe.system.compatibility import (
     unused_option_cautions,
 )
 from rockframe.system.options import (
+    SLIDING_AT_SMALL_ROTATION,
     Coupling,
     Options,
     Restraint,
@@ -37,13 +35,19 @@ from rockframe.system.options import (
 )
 from rockframe.system.own_base import OwnBase
 from rockframe.system.own_scene import OwnScene
-from rockframe.system.parts import RESTRAINER, Parts, check_registered, sort_parts, support_of
+from rockframe.system.parts import (
+    RESTRAINER,
+    Parts,
+    base_friction,
+    check_registered,
+    sort_parts,
+    support_of,
+)
 from rockframe.system.rear_wall import rear_wall_setting
+from rockframe.system.rigid_ground import rigid_ground_setting
 from rockframe.system.rocking_frame import rocking_frame_setting
 from rockframe.system.setting import Setting, describe
 from rockframe.system.single_body import SingleBodySetting, SlidingBodySetting
-from rockframe.system.sliding_ground import rigid_ground_setting
-from rockframe.system.sliding_stack import restrained_setting, sliding_stack_setting
 from rockframe.system.stack import StackSetting, refuse_options, stack_setting
 
 
@@ -129,10 +133,7 @@ def _stack(slot: str, parts: Parts, options: Options) -> StackSetting:
     else:
         refuse_options("a Stack", options, small=not parts.links)
         blocks, offsets, bases = stack.si.bodies, stack.si.offsets, (*stack.interfaces, base)
-    held = stack_setting(blocks, offsets, bases, options, parts.links)
-    if stack is None and isinstance(base, RigidGround):
-        return restrained_setting(base, held)
-    return sliding_stack_setting(bases, held)
+    return stack_setting(blocks, offsets, bases, options, parts.links)
 
 
 _BLOCK_ON_CAP = frozenset({"block", "pads", "cap", "soil"})

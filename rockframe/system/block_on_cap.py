@@ -16,12 +16,17 @@ from rockframe.dynamics.single_body import eccentricity_of
 from rockframe.dynamics.statics import StandingChain
 from rockframe.dynamics.vibrations import ChainBody
 from rockframe.errors import AssemblyError
-from rockframe.system.bodies import Cap
-from rockframe.system.compatibility import NO_SLIP, BaseFriction
+from rockframe.system.bodies import NO_SLIP, BaseFriction, Cap
 from rockframe.system.options import restraint_words
-from rockframe.system.setting import Setting, SlipRange, Words, chain_slips, sliding_words
+from rockframe.system.setting import (
+    Setting,
+    SlipRange,
+    Words,
+    chain_slips,
+    overhang_cautions,
+    sliding_words,
+)
 from rockframe.system.single_body import SingleBodySetting
-from rockframe.system.sliding_stack import overhang_cautions
 from rockframe.system.statics import SmallMotion, StandingBodies, Statics, static_values
 from rockframe.system.support import BaseWords, Support
 
@@ -41,7 +46,13 @@ class BlockOnCapSetting(Setting):
     upper: SingleBodySetting  # the block on its pads
     lower: SingleBodySetting  # block and cap as one body on the soil
     cap: Cap  # the cap
+    name: ClassVar[str]  # of the model
     stacked: ClassVar[bool] = True
+
+    @property
+    def model(self) -> str:
+        """Name of the model."""
+        return self.name
 
     @property
     def supports(self) -> tuple[Support, ...]:
@@ -158,10 +169,7 @@ class BlockOnCapSetting(Setting):
 class CoupledSetting(BlockOnCapSetting):
     """Block and cap coupled in one set of equations."""
 
-    @property
-    def model(self) -> str:
-        """Name of the model."""
-        return "coupled"
+    name = "coupled"
 
     def cautions(self) -> list[str]:
         """Return the warnings of pads and soil, and about a cap that is too light."""
@@ -209,13 +217,9 @@ class SlidingCoupledSetting(CoupledSetting):
     """Block and cap, with friction on pads, on soil or on both."""
 
     frictions: tuple[BaseFriction, BaseFriction]  # between block and cap, between cap and soil
+    name = "coupled-sliding"
     slides = True
     sliding_bodies = ("the block", "the cap")
-
-    @property
-    def model(self) -> str:
-        """Name of the model."""
-        return "coupled-sliding"
 
     def words(self) -> Words:
         """Describe block, cap and soil, and their friction."""
@@ -248,10 +252,7 @@ class SlidingCoupledSetting(CoupledSetting):
 class CascadeSetting(BlockOnCapSetting):
     """Two stages, Eq. (20): both as one body on the soil, then the block on the moving cap."""
 
-    @property
-    def model(self) -> str:
-        """Name of the model."""
-        return "cascade"
+    name = "cascade"
 
     def equations(self, pads: BaseWords, soil: BaseWords) -> list[tuple[str, str]]:
         """Return each stage's contact states with the equations that govern them."""

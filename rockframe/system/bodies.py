@@ -1,5 +1,6 @@
 """Bodies on a base: sizes, inertia and restitution, block and cap as one body, and their load."""
 
+import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property, lru_cache
@@ -33,6 +34,24 @@ class Restitutions(NamedTuple):
         if self.left == self.right:
             return f"{self.left:.6g}"
         return f"{self.left:.6g} (onto the left corner), {self.right:.6g} (onto the right one)"
+
+
+class BaseFriction(NamedTuple):
+    """Coefficients of static, kinetic and impulsive friction; infinite where a base holds."""
+
+    static: float
+    kinetic: float
+    impulsive: float
+
+    def row(self, base: str = "") -> tuple[str, str]:
+        """Return a name for the coefficients, after that of their base, and the coefficients."""
+        sticks = ", held in impacts" if math.isinf(self.impulsive) else ""
+        words = f"{self.static:.6g}, {self.kinetic:.6g}{sticks}"
+        return f"{base}friction at rest, and of slip", "held" if math.isinf(self.static) else words
+
+
+NO_SLIP: Final = BaseFriction(math.inf, math.inf, math.inf)
+"""Friction of a base on which nothing slips."""
 
 
 def base_restitution(base: Component | None, greatest: Restitutions) -> Restitutions:
@@ -96,16 +115,13 @@ class SupportedBody(BodyGeometry):
         moment = moment - self.inertia * angular
         return moment + values[LINK_MOMENT] if LINK_MOMENT in values else moment
 
-    def base_settlement(self, rotation: Array, height: Array, *, small: bool) -> Array:
-        """Return the settlement of the middle of the base from rest, :eq:`eq-settlement` [m].
-
-        `height` is the rise of the centre of mass from rest.
-        """
+    def base_settlement(self, rotation: Array, rise: Array, *, small: bool) -> Array:
+        """Return the settlement of the middle of the base from rest, :eq:`eq-settlement` [m]."""
         half, beside = 0.5 * rotation, self.eccentricity * rotation
         if not small:
             half = np.sin(half)
             beside = self.eccentricity * np.sin(rotation) if self.eccentricity != 0.0 else beside
-        return -height - beside - 2.0 * self.centre_height * half**2
+        return -rise - beside - 2.0 * self.centre_height * half**2
 
     def relative_to_centre(
         self, x: Array, y: Array, values: Mapping[str, Any]
@@ -149,11 +165,8 @@ class CornerSupportedBody(SupportedBody):
         lift = 0.0 if small else values["horizontal_reaction"] * np.abs(sine)
         return self.contact_half_width * (shift * cosine + lift)
 
-    def base_settlement(self, rotation: Array, height: Array, *, small: bool) -> Array:
-        """Return the settlement of the middle of the base from rest [m].
-
-        It is zero or negative: the body rotates about a corner, and the middle rises.
-        """
+    def base_settlement(self, rotation: Array, rise: Array, *, small: bool) -> Array:
+        """Return the settlement of the middle of the base, zero or negative about a corner [m]."""
         return -self.contact_half_width * np.abs(rotation if small else np.sin(rotation))
 
 

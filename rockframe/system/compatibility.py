@@ -1,8 +1,8 @@
-"""Whether parts fit one another: faults, contradictions, options without effect, friction."""
+"""Whether parts fit one another: faults, contradictions, options without effect."""
 
 import math
 from inspect import getattr_static
-from typing import Final, NamedTuple
+from typing import Final
 
 from rockframe.case_arrays import isfinite
 from rockframe.components import (
@@ -15,17 +15,12 @@ from rockframe.components import (
     Stack,
     Tendon,
 )
-from rockframe.components.bases import Impact
 from rockframe.components.block_numbers import BlockSI, squat_body_warnings
 from rockframe.system.options import Coupling, Options, Restraint, Sliding
 from rockframe.system.own_base import OwnBase
-from rockframe.system.parts import Parts, slot_of_class
+from rockframe.system.parts import Parts, base_friction, slot_of_class
 from rockframe.system.rear_wall import IMPACT_TIME, equivalent_wall
 
-SLIDING_AT_SMALL_ROTATION: Final = (
-    "a block slides with rotation='finite' only; give sliding='checked' to hold it and compare its "
-    "friction"
-)
 _ROUNDING = 1e-12
 BASE_SLOTS = ("pads", "soil", "ground")
 """Slots of bases that bodies of a stack may stand on."""
@@ -280,40 +275,6 @@ def unused_option_cautions(parts: Parts, options: Options) -> list[str]:
                 "it could break or yield"
             )
     return messages
-
-
-class BaseFriction(NamedTuple):
-    """Coefficients of static, kinetic and impulsive friction; infinite where a base holds."""
-
-    static: float
-    kinetic: float
-    impulsive: float
-
-    def row(self, base: str = "") -> tuple[str, str]:
-        """Return a name for the coefficients, after that of their base, and the coefficients."""
-        sticks = ", held in impacts" if math.isinf(self.impulsive) else ""
-        words = f"{self.static:.6g}, {self.kinetic:.6g}{sticks}"
-        return f"{base}friction at rest, and of slip", "held" if math.isinf(self.static) else words
-
-
-NO_SLIP: Final = BaseFriction(math.inf, math.inf, math.inf)
-"""Friction of a base on which nothing slips."""
-INFINITE_COEFFICIENT: Final = 1e8
-"""Coefficient of friction that counts as infinite: a body would slip only under normal forces
-below the rounding errors of weights."""
-
-
-def base_friction(part: Component, options: Options) -> BaseFriction | None:
-    """Return the friction of a base; None if nothing slips on it."""
-    static = getattr(part.si, "friction", None)
-    if static is None or options.sliding is Sliding.CHECKED or isinstance(part, OwnBase):
-        return None
-    kinetic = static if part.si.kinetic_friction is None else part.si.kinetic_friction
-    rigid = isinstance(part, RigidGround)
-    if kinetic >= INFINITE_COEFFICIENT and not rigid:
-        return NO_SLIP
-    sticks = rigid and part.si.impact is Impact.STICK
-    return BaseFriction(static, kinetic, math.inf if sticks else kinetic)
 
 
 def _block_slides(parts: Parts, options: Options) -> bool:

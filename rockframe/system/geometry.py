@@ -22,31 +22,25 @@ class LowerBody(NamedTuple):
     """A body of a stack; places are from the middle of the lowest base [m]."""
 
     outline: Array
-    centre: tuple[float, float]  # its centre of mass
+    centre: tuple[float, float]  # its centre of mass, with masses on it
 
 
 class LinkedPoints(NamedTuple):
-    """The two points of a restrainer, from the middle of the lowest base [m], and their bodies.
-
-    Bodies are counted from 0 at the top; -1 is the ground.
-    """
+    """The two points of a restrainer, from the middle of the lowest base [m], and their bodies."""
 
     points: Array
-    bodies: tuple[int, int]
+    bodies: tuple[int, int]  # counted from 0 at the top; -1 is the ground
 
 
 @dataclass(frozen=True)
 class Geometry:
-    """Sizes and places of a scene's parts, in SI units, as :eq:`eq-scene-places` needs them.
-
-    Places are to the right of the middle of the lowest base, and above it.
-    """
+    """Sizes and places of parts, from the middle of the lowest base, :eq:`eq-scene-places` [m]."""
 
     outline: Array  # outline of the block, from the middle of its own base
     half_width: float  # half the width of the block's base
     centre: tuple[float, float]  # the block's centre of mass, from the middle of its own base
     # centre of mass of the body whose motion results give, from the middle of the lowest base: of
-    # the block, or of block and cap where these are one body
+    # the block, of block and cap where these are one body, or of the block with masses on it
     response_centre: tuple[float, float]
     small_rotation: bool  # whether the kinematics are expanded in the rotation
     inclination: float = 0.0  # angle by which the base line rises to the right [rad]
@@ -57,6 +51,7 @@ class Geometry:
     soil_settlement: float | None = None
     stacked: bool = False  # whether there are pads between block and cap
     lower: tuple[LowerBody, ...] = ()  # bodies of a stack beneath the block, from the top down
+    beside: float = 0.0  # distance of the middle of the block's base to the right of the lowest one
     links: tuple[LinkedPoints, ...] = ()  # points that restrainers link
     # places of the columns under a beam, to the right of the middle; the block is one column
     columns: tuple[float, ...] = ()
@@ -73,8 +68,7 @@ class Geometry:
     @property
     def base_position(self) -> Array:
         """The middle of the block's base, shape (2,) [m]."""
-        beside = self.response_centre[0] - self.centre[0] if self.lower else 0.0
-        return np.array([beside, self.base_level])
+        return np.array([self.beside, self.base_level])
 
     @property
     def height(self) -> float:
@@ -106,37 +100,46 @@ def _rectangle(half_width: float, height: float, x: float = 0.0, y: float = 0.0)
 
 
 def geometry_of(scene: Assembly) -> Geometry:
-    """Return the geometry of a scene."""
-    parts, setting = scene.parts, scene.setting
-    if parts.stack is not None:
-        return _stack_geometry(parts.stack, scene)
-    block, frame = parts.block_si, None if parts.frame is None else parts.frame.si
-    cap = None if parts.cap is None else parts.cap_si
+    """Return the geometry of a scene; bases between the bodies of a stack are not drawn."""
+    parts, setting, block = scene.parts, scene.setting, scene.parts.block_si
+    cap, frame = None if parts.cap is None else parts.cap_si, parts.frame
     members = parts.block.members if isinstance(parts.block, FrameEquivalent) else ()
     body, sinks = setting.body, [support.settlement for support in setting.supports]
-    level = 2.0 * cap.half_height if setting.stacked and cap is not None else 0.0
+    bodies, places = (block,), [(0.0, 0.0)]
+    moving = setting.bodies if isinstance(setting, StackSetting) else ()
+    if parts.stack is not None:
+        bodies = parts.stack.si.bodies
+        for under, offset in zip(bodies[:0:-1], parts.stack.si.offsets[-2::-1], strict=True):
+            places.insert(0, (places[0][0] + offset, places[0][1] + under.height))
+    (beside, level), drawn = places[0], 0 if parts.wall is None else parts.wall.si.on_body - 1
+    if setting.stacked and cap is not None:
+        level = 2.0 * cap.half_height
     return Geometry(
         outline=_rectangle(block.half_width, block.height),
         members=tuple(map(np.array, member_outlines(members))),
         half_width=block.half_width,
         centre=(block.eccentricity, block.centre_height),
-        response_centre=(body.eccentricity, level + body.centre_height),
+        beside=beside,
+        response_centre=(beside + body.eccentricity, level + body.centre_height),
         cap=None if cap is None else (cap.half_width, 2.0 * cap.half_height),
-        pad_settlement=None if parts.pads is None else sinks[0],
+        pad_settlement=None if parts.pads is None or parts.stack is not None else sinks[0],
         soil_settlement=None if parts.soil is None else sinks[-1],
         stacked=setting.stacked,
+        lower=tuple(
+            LowerBody(_rectangle(under.half_width, under.height, x, y),
+                      (x + body.eccentricity, y + body.centre_height))
+            for under, body, (x, y) in zip(bodies[1:], moving[1:], places[1:], strict=True)
+        ),
         inclination=scene.options.inclination,
         small_rotation=scene.options.small,
         links=_linked_points(setting),
-        columns=() if frame is None else tuple(column_positions(frame)),
-        beam=None if frame is None else np.array(frame_outlines(frame)[-1]),
-        wall=_wall_outline(parts.wall, block),
-    )
+        columns=() if frame is None else tuple(column_positions(frame.si)),
+        beam=None if frame is None else np.array(frame_outlines(frame.si)[-1]),
+        wall=_wall_outline(parts.wall, bodies[drawn], places[drawn]),
+    )  # fmt: skip
 
 
-def _wall_outline(
-    wall: RearWall | None, body: BlockSI, place: tuple[float, float] = (0.0, 0.0)
-) -> Array | None:
+def _wall_outline(wall: RearWall | None, body: BlockSI, place: tuple[float, float]) -> Array | None:
     """Return the outline of a wall in drawings: as high and as thick as its body.
 
     `place` is the middle of the body's base, from the middle of the lowest one.
@@ -162,34 +165,6 @@ def _linked_points(setting: Setting) -> tuple[LinkedPoints, ...]:
             points[0, 1] += setting.bodies[link.on].centre_height + setting.tops[link.on]
         linked.append(LinkedPoints(points, (link.on, link.to)))
     return tuple(linked)
-
-
-def _stack_geometry(stack: Stack, scene: Assembly) -> Geometry:
-    """Return the geometry of a stack; bases between its bodies are not drawn."""
-    lower: list[LowerBody] = []
-    beside = level = 0.0
-    bodies, offsets = stack.si.bodies, stack.si.offsets
-    for body, offset in zip(bodies[:0:-1], offsets[:0:-1], strict=True):
-        beside += offset
-        centre = (beside + body.eccentricity, level + body.centre_height)
-        lower.insert(0, LowerBody(_rectangle(body.half_width, body.height, beside, level), centre))
-        level += body.height
-    block = bodies[0]
-    beside += offsets[0]
-    wall = scene.parts.wall
-    k = 0 if wall is None else wall.si.on_body - 1
-    place = sum(offsets[k:]), sum(under.height for under in bodies[k + 1 :])
-    return Geometry(
-        outline=_rectangle(block.half_width, block.height),
-        half_width=block.half_width,
-        centre=(block.eccentricity, block.centre_height),
-        response_centre=(beside + block.eccentricity, level + block.centre_height),
-        soil_settlement=None if scene.parts.soil is None else scene.setting.supports[-1].settlement,
-        small_rotation=scene.options.small,
-        lower=tuple(lower),
-        links=_linked_points(scene.setting),
-        wall=_wall_outline(wall, bodies[k], place),
-    )
 
 
 _PAD_THICKNESS: Final = 0.06

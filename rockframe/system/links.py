@@ -88,11 +88,6 @@ class PlacedLink:
         (x, y), (to_x, to_y) = self.ends
         return x - to_x, y - to_y
 
-    @property
-    def length(self) -> float:
-        """Distance of the points [m]."""
-        return math.hypot(*self.vector)
-
     def numbers(self, mass: float) -> LinkNumbers:
         """Return the law, per unit of a mass [kg]."""
         if isinstance(self.part, Restrainer | Tendon):
@@ -230,7 +225,7 @@ def place_links(
         if not math.isfinite(far * far * max(getattr(part.si, "stiffness", None) or 1.0, 1.0)):
             faults.append(f"{name}: its moments are larger than a computer's numbers can be")
         link = PlacedLink(part, name, on, points[0], to, points[1], ends)
-        if link.length == 0.0 and isinstance(part, Restrainer) and part.si.preload:
+        if not any(link.vector) and isinstance(part, Restrainer) and part.si.preload:
             faults.append(f"{name}: its points meet, so that its preload has no direction")
         placed.append(link)
     if faults:

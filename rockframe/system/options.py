@@ -183,3 +183,7 @@ RESTRAINT_CODES: Final = {
     Restraint.CENTRE: CENTRE,
 }
 """Codes of the restraint rules in the equations."""
+SLIDING_AT_SMALL_ROTATION: Final = (
+    "a block slides with rotation='finite' only; give sliding='checked' to hold it and compare its "
+    "friction"
+)

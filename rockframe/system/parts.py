@@ -1,5 +1,6 @@
 """The parts of a scene by their slots, such as block, pads, soil and ground."""
 
+import math
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from inspect import getattr_static
@@ -21,11 +22,13 @@ from rockframe.components import (
     TwoSpringSupport,
     WinklerSoil,
 )
+from rockframe.components.bases import Impact
 from rockframe.components.block_numbers import BlockSI
 from rockframe.components.parameters import Declared
 from rockframe.errors import AssemblyError, LabelError, did_you_mean, short_repr
 from rockframe.motion import GroundMotion
-from rockframe.system.bodies import BaseLoad, Cap, block_cap
+from rockframe.system.bodies import NO_SLIP, BaseFriction, BaseLoad, Cap, block_cap
+from rockframe.system.options import Options, Sliding
 from rockframe.system.own_base import OwnBase
 from rockframe.system.support import RigidBase, Support, bed_under, pads_under
 
@@ -59,6 +62,9 @@ RESTRAINER: Final = "restrainer"
 """The slot of links; further links of a scene have numbered slots."""
 BUILTIN_SLOTS: Final = tuple(dict.fromkeys(kind.slot for kind in _KINDS.values()))
 """Slots of the package's own parts, in a fixed order; `motion` is the last."""
+INFINITE_COEFFICIENT: Final = 1e8
+"""Coefficient of friction that counts as infinite: a body would slip only under normal forces
+below the rounding errors of weights."""
 
 
 def slots() -> tuple[str, ...]:
@@ -105,6 +111,19 @@ def support_of(part: Component, load: BaseLoad) -> Support:
         msg = f"{type(part).__name__}.support must return a Support, got {short_repr(support)}"
         raise AssemblyError([msg])
     return support
+
+
+def base_friction(part: Component, options: Options) -> BaseFriction | None:
+    """Return the friction of a base; None if nothing slips on it."""
+    static = getattr(part.si, "friction", None)
+    if static is None or options.sliding is Sliding.CHECKED or isinstance(part, OwnBase):
+        return None
+    kinetic = static if part.si.kinetic_friction is None else part.si.kinetic_friction
+    rigid = isinstance(part, RigidGround)
+    if kinetic >= INFINITE_COEFFICIENT and not rigid:
+        return NO_SLIP
+    sticks = rigid and part.si.impact is Impact.STICK
+    return BaseFriction(static, kinetic, math.inf if sticks else kinetic)
 
 
 def _subclass_faults(part: Component, known: type) -> list[str]:
@@ -229,7 +248,7 @@ class Parts:
         slots = dict(self.filled)
         if slot not in slots:
             known = ", ".join(map(repr, slots))
-            near = did_you_mean(slot, slots) or ";"
+            near = did_you_mean(slot, slots) or "."
             msg = f"the scene has no part {short_repr(slot)}{near} It has {known}"
             raise LabelError(msg)
         return cast("Component", slots[slot])

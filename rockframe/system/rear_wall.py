@@ -37,13 +37,9 @@ class RearWallSetting(RigidGroundSetting):
     wall: RearWall
     rebound: float  # angular velocity after an impact over that before it [1]
     height: float  # height of the block [m]
+    name = "rigid ground with a wall"
     struck_by_base = False
     flight_advice = "; give the wall a stiffness to follow its flight"
-
-    @property
-    def model(self) -> str:
-        """Name of the model."""
-        return "rigid ground with a wall"
 
     @property
     def direction(self) -> float:
@@ -161,13 +157,10 @@ def _rebound_ratio(
 ) -> float:
     """Return the ratio of the angular velocities at an impact, :eq:`eq-wall-impact`."""
     law = wall.given.restitution
-    if law is WallImpact.NEWTON:
-        return -restitution.left * restitution.right * float(wall.given.wall_restitution)
-    if law is not WallImpact.SORRENTINO:
+    if not isinstance(law, WallImpact):
         return float(law)
-    factor = wall_impact_factor(body, wall.given.side, height)
-    ratio = restitution.left * restitution.right * factor
-    if ratio < 0.0:
+    ratio = restitution.left * restitution.right * _wall_ratio(wall, body, height)
+    if ratio < 0.0 or law is WallImpact.NEWTON:
         return ratio
     slenderness = 0.5 * height / body.half_width
     raise AssemblyError([
@@ -188,12 +181,8 @@ class EquivalentWall(NamedTuple):
 def equivalent_wall(wall: RearWall, block: BlockSI) -> EquivalentWall:
     """Return the elastic wall of an impact of :data:`IMPACT_TIME`, :eq:`eq-yielding-wall`."""
     law, body = wall.given.restitution, block_body(block)
-    rebound = (
-        -law if isinstance(law, float) else -wall_impact_factor(body, wall.given.side, block.height)
-    )
-    if law is WallImpact.NEWTON:
-        rebound = float(wall.given.wall_restitution)
-    rebound = abs(max(rebound, 0.0))
+    ratio = _wall_ratio(wall, body, block.height) if isinstance(law, WallImpact) else float(law)
+    rebound = abs(max(-ratio, 0.0))
     mass = (body.inertia + body.mass * body.centre_height**2) / block.height**2
     decrement = -math.log(rebound) if rebound > 0.0 else math.inf
     ratio = decrement / math.hypot(math.pi, decrement) if math.isfinite(decrement) else 1.0
@@ -203,9 +192,14 @@ def equivalent_wall(wall: RearWall, block: BlockSI) -> EquivalentWall:
     return EquivalentWall(rebound, mass * frequency**2, 2.0 * ratio * mass * frequency)
 
 
-def wall_impact_factor(body: SupportedBody, side: WallSide, height: float) -> float:
-    """Return the ratio from rocking about the rear base corner to that about the rear top one."""
-    beside = body.left if side is WallSide.LEFT else body.right
+def _wall_ratio(wall: RearWall, body: SupportedBody, height: float) -> float:
+    """Return the ratio of the velocities after and before an impact on the wall alone, by its law.
+
+    By Sorrentino it turns rocking about the rear base corner into that about the rear top one.
+    """
+    if wall.given.restitution is WallImpact.NEWTON:
+        return -float(wall.given.wall_restitution)
+    beside = body.left if wall.given.side is WallSide.LEFT else body.right
     below, inertia = height - body.centre_height, body.inertia / body.mass
     before = inertia + beside * beside - body.centre_height * below
     return before / (inertia + beside * beside + below * below)

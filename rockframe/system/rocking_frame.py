@@ -91,14 +91,10 @@ class RockingFrameSetting(RigidGroundSetting):
     """Columns under a beam on rigid ground."""
 
     frame: RockingFrameSI
+    name = "rocking frame"
     source: ClassVar[str] = "Makris and Vassiliou 2013; omega of columns and beam together"
     greatest: ClassVar[str] = "the greatest value, of columns and beam together"
     flight_advice = ""
-
-    @property
-    def model(self) -> str:
-        """Name of the model."""
-        return "rocking frame"
 
     def words(self) -> Words:
         """Describe the frame."""
@@ -131,11 +127,7 @@ class TendonFrameSetting(RockingFrameSetting):
     """Columns under a beam on rigid ground, with tendons along the axes of the columns."""
 
     tendons: tuple[Tendon, ...]
-
-    @property
-    def model(self) -> str:
-        """Name of the model."""
-        return "rocking frame with tendons"
+    name = "rocking frame with tendons"
 
     @property
     def link_names(self) -> tuple[str, ...]:

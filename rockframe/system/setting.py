@@ -25,6 +25,10 @@ if TYPE_CHECKING:
 
 LARGE_LEAN = 0.1
 """Share of the overturning angle above which a rotation at rest gives a warning."""
+MIN_OVERHANG: Final = 0.1
+"""Least overhang of a body beyond an edge that gives a warning, over half its base width.
+
+The edge bears in place of the corner, and its lever arm is shorter by this share."""
 
 
 class SlipRange(NamedTuple):
@@ -44,6 +48,19 @@ def chain_slips(setting: "Setting", count: int, ending: Ending) -> tuple[SlipRan
     """Return the slips of the `count` highest bodies of a chain."""
     chain = cast("SlippingBodies", setting.compile().system)
     return tuple(SlipRange(*chain.slip_range(k, ending)) for k in range(count))
+
+
+def overhang_cautions(
+    slips: SlipRange, offset: float, upper: float, lower: float, names: Sequence[str]
+) -> list[str]:
+    """Warn of a body that slipped beyond an edge of the one below; half widths of both [m]."""
+    overhang = max(slips.right + offset, slips.left - offset) - (lower - upper)
+    if overhang <= MIN_OVERHANG * upper:
+        return []
+    return [
+        f"{names[0]} slides {overhang:.3g} m beyond the edge of {names[1]}, whose top goes "
+        "on without end in the model: it would tip about that edge sooner"
+    ]
 
 
 SLIP_EQUATION: Final = (
@@ -229,10 +246,7 @@ class Setting(ABC):
         return {f"{FRICTION_TO_ROCK} b/h": min(body.left, body.right) / body.centre_height}
 
     def start_faults(self, rotation: float, has_vertical_start: bool) -> list[str]:
-        """Return the faults of an initial state, by the rotation and the base of the body.
-
-        On rigid ground, which has no support, a vertical start is a fault.
-        """
+        """Return the faults of an initial state; a vertical start on rigid ground is one."""
         if not self.supports:
             return [NO_VERTICAL_START] if has_vertical_start else []
         return self.supports[0].start_faults(rotation, has_vertical_start)

@@ -9,7 +9,7 @@ from rockframe.case_arrays import isnan
 from rockframe.dynamics.protocol import ContactModel, Ending
 from rockframe.dynamics.single_body import single_body
 from rockframe.errors import AssemblyError
-from rockframe.system.compatibility import BaseFriction
+from rockframe.system.bodies import BaseFriction
 from rockframe.system.options import restraint_words
 from rockframe.system.setting import Setting, SlipRange, Words, chain_slips, sliding_words
 from rockframe.system.statics import SmallMotion, Statics, static_values

@@ -1,4 +1,4 @@
-"""The scene of stacked bodies, with links: its numbers, words, statics and model."""
+"""The scenes of stacked bodies, with links, held or sliding: words, statics and models."""
 
 import math
 from collections.abc import Sequence
@@ -6,23 +6,44 @@ from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import TYPE_CHECKING, Any, Final
 
-from rockframe.components import Component, Link, Load, Tendon
+from rockframe.components import Component, Link, Load, RigidGround, Tendon, TwoSpringSupport
+from rockframe.components.bases import Impact
 from rockframe.components.block_numbers import BlockSI
 from rockframe.dynamics.body_statics import Pose
-from rockframe.dynamics.protocol import ContactModel
+from rockframe.dynamics.protocol import MAX_MODES, ContactModel, Ending
 from rockframe.errors import AssemblyError
-from rockframe.system.bodies import BaseLoad, block_body, with_point_mass
-from rockframe.system.links import place_links
-from rockframe.system.options import Options, restraint_words
-from rockframe.system.parts import support_of
-from rockframe.system.rigid_base import (
-    rigid_base_load,
-    rocking_energy,
-    rocking_statics,
-    statics_beyond_uplift,
-    uplift_limits,
+from rockframe.system.bodies import (
+    NO_SLIP,
+    BaseFriction,
+    BaseLoad,
+    block_body,
+    with_point_mass,
 )
-from rockframe.system.setting import FRICTION_TO_ROCK, Words
+from rockframe.system.links import place_links
+from rockframe.system.options import (
+    SLIDING_AT_SMALL_ROTATION,
+    Options,
+    Sliding,
+    restraint_words,
+)
+from rockframe.system.parts import base_friction, support_of
+from rockframe.system.rigid_ground import (
+    friction_to_roll_over,
+    impact_words,
+    jamming_faults,
+    slide_rock_of,
+    slips_on_ground,
+)
+from rockframe.system.setting import (
+    FRICTION_TO_ROCK,
+    HELD_BY_FRICTION,
+    SLIP_EQUATION,
+    SlipRange,
+    Words,
+    chain_slips,
+    overhang_cautions,
+    sliding_words,
+)
 from rockframe.system.stacked_bodies import StackedBodies, combined_body
 from rockframe.system.statics import SmallMotion, Statics, static_values
 from rockframe.system.support import RigidBase, corner_reactions
@@ -52,7 +73,7 @@ class StackSetting(StackedBodies):
         cautions = list[str]()
         for k, friction in enumerate(self.frictions):
             if self.rigid[k] and math.isfinite(friction.static):
-                load = rigid_base_load(self, k)
+                load = self.rigid_base_load(k)
                 name = "the block" if len(self.bodies) == 1 else f"body {k + 1}"
                 if abs(load.shear) > friction.static * load.normal:
                     cautions.append(
@@ -90,7 +111,7 @@ class StackSetting(StackedBodies):
             if not self.links:
                 frictions[f"{name} b/h"] = min(body.left, body.right) / body.centre_height
             elif rigid:
-                frictions[name] = uplift_limits(self, k).friction
+                frictions[name] = self.uplift_limits(k).friction
         return frictions
 
     def words(self) -> Words:
@@ -102,7 +123,7 @@ class StackSetting(StackedBodies):
             size = f"{2.0 * body.half_width:.6g} m wide, centre of mass {body.centre_height:.6g} m"
             numbers.append((f"body {k}", f"{size} above its base, {body.mass:.6g} kg"))
             if self.rigid[k - 1]:
-                starts = uplift_limits(self, k - 1).words()
+                starts = self.uplift_limits(k - 1).words()
                 numbers.append((f"base {k}: rigid, all above rocks as one at xg'' of", starts))
             numbers += [(f"base {k}: {name}", words) for name, words in of_base.numbers]
             left_out += [one for one in of_base.left_out if one not in left_out]
@@ -138,7 +159,7 @@ class StackSetting(StackedBodies):
         for k, rigid in enumerate(self.rigid):
             if not rigid:
                 continue
-            load = rigid_base_load(self, k)
+            load = self.rigid_base_load(k)
             done = None
             if load.normal <= 0.0:
                 done = f"lift body {k + 1}"
@@ -204,7 +225,7 @@ class StackSetting(StackedBodies):
         """
         if not any(self.rigid) or not self.groups:
             return super().overturning_energy
-        return min(rocking_energy(self, k) for k, rigid in enumerate(self.rigid) if rigid)
+        return min(self.rocking_energy(k) for k, rigid in enumerate(self.rigid) if rigid)
 
     def curve(self, rotations: Sequence[float]) -> list[Statics | None]:
         """Return the equilibria with the highest body held at rotations [rad].
@@ -212,19 +233,19 @@ class StackSetting(StackedBodies):
         With rigid and deformable bases, also where a corner has lifted from a rigid base.
         """
         if not self.groups:
-            return [rocking_statics(self, rotation) for rotation in rotations]
+            return [self.rocking_statics(rotation) for rotation in rotations]
         states = self.standing.held(rotations)
         if len(self.bodies) == 1:
             return states
         if any(self.rigid):
-            states = statics_beyond_uplift(self, rotations, states)
+            states = self.statics_beyond_uplift(rotations, states)
         return [None if state is None else replace(state, reactions={}) for state in states]
 
     def equilibrium(self) -> dict[str, Any]:
         """Return the values of links and, of a single body, of its base at rest, by names."""
         values = dict[str, Any]()
         if len(self.bodies) == 1 and not self.groups:
-            load = rigid_base_load(self, 0)
+            load = self.rigid_base_load(0)
             left, right = self.body.left, self.body.right
             reactions = (load.right_limit / (left + right), load.left_limit / (left + right))
             values = {
@@ -262,6 +283,102 @@ class StackSetting(StackedBodies):
         if poses is None:
             raise AssemblyError([NO_EQUILIBRIUM + PULLED_OVER])
         return poses[0].state.vertical
+
+
+@dataclass(frozen=True)
+class SlidingStackSetting(StackSetting):
+    """Stacked bodies that are held by friction, or slip, on their bases."""
+
+    slides = True
+
+    @property
+    def model(self) -> str:
+        """Name of the model."""
+        return f"{super().model}-sliding"
+
+    def words(self) -> Words:
+        """Describe bodies, bases and friction."""
+        return sliding_words(super().words(), *(
+            friction.row(f"base {k}: ")
+            for k, friction in enumerate(self.frictions, 1)
+        ))  # fmt: skip
+
+    def slips_of(self, ending: Ending) -> tuple[SlipRange, ...]:
+        """Return how far each body slipped."""
+        return chain_slips(self, len(self.bodies), ending)
+
+    def beyond_edges(self, ending: Ending) -> list[str]:
+        """Warn of bodies that slipped beyond an edge of the body below, which is not modelled."""
+        pairs = zip(self.bodies, self.bodies[1:], self.offsets, self.slips_of(ending), strict=False)
+        return [
+            text
+            for k, (upper, lower, offset, slips) in enumerate(pairs, 1)
+            for text in overhang_cautions(
+                slips, offset, upper.half_width, lower.half_width, (f"body {k}", f"body {k + 1}")
+            )
+        ]
+
+
+@dataclass(frozen=True)
+class RestrainedSetting(StackSetting):
+    """A block with links on rigid ground, which holds it against sliding."""
+
+    @property
+    def friction(self) -> BaseFriction:
+        """Friction of the ground."""
+        return self.frictions[0] if self.frictions else NO_SLIP
+
+    def contact_model(self) -> ContactModel:
+        """Return the equations of slip, rotation and rise, with links."""
+        from rockframe.dynamics.slide_rock import slide_rock
+        from rockframe.dynamics.tied_slide_rock import tied_slide_rock
+
+        self._rest  # noqa: B018 - refuses a block that its links tip over
+        block = slide_rock_of(self.body, self.friction, self.body.maximum_restitution, self.gravity)
+        if not self.chain_links:  # all links are loads that are masses
+            return slide_rock(block, mass=self.body.mass)
+        return tied_slide_rock(block, self.chain_links, mass=self.body.mass)
+
+
+@dataclass(frozen=True)
+class SlidingRestrainedSetting(RestrainedSetting):
+    """A block with links on rigid ground, on which it slides."""
+
+    impact: Impact = Impact.COULOMB  # law of its impacts
+    slides = True
+
+    @property
+    def model(self) -> str:
+        """Name of the model."""
+        return "rigid-restrained-sliding"
+
+    def words(self) -> Words:
+        """Describe the block, its links and its friction."""
+        text = super().words()
+        slides = sliding_words(
+            text,
+            self.friction.row(),
+            ("friction to land without slip", f"{friction_to_roll_over(self.body):.6g}"),
+            restraint=HELD_BY_FRICTION,
+        )
+        return replace(
+            slides,
+            equations=[
+                ("full", "at rest while friction holds the base, and until it tips; else it slides "
+                 "on its whole base"),
+                ("left, right", "it rocks about the corner that bears while friction holds that, "
+                 "and slips on it otherwise"),
+                SLIP_EQUATION,
+                ("flight", "nothing bears: N = 0"),
+                ("impact", f"{self.impact}: {impact_words(self.impact)}; restrainers, whose forces "
+                 "are finite, have no part in it"),
+                *(equation for equation in text.equations if equation[0] == "restrainers"),
+            ],
+        )  # fmt: skip
+
+    def slips_of(self, ending: Ending) -> tuple[SlipRange, ...]:
+        """Return how far the block slipped."""
+        return (slips_on_ground(ending),)
 
 
 def refuse_options(what: str, options: Options, *, small: bool) -> None:
@@ -309,5 +426,67 @@ def stack_setting(
     ]
     if faults:
         raise AssemblyError(faults)
-    placed = place_links(links, bodies, tops, offsets)
-    return StackSetting(load, bodies, tops, offsets, bases, placed)
+    links_in_place = place_links(links, bodies, tops, offsets)
+    held = StackSetting(load, bodies, tops, offsets, bases, links_in_place)
+    return _with_friction(held, standing_on)
+
+
+def _with_friction(held: StackSetting, standing_on: Sequence[Component]) -> StackSetting:
+    """Return the setting of the same bodies with slip where bases have friction."""
+    options, bodies = held.options, held.bodies
+    numbers = held.load, bodies, held.tops, held.offsets, held.bases, held.links
+    frictions = [base_friction(base, options) for base in standing_on]
+    ground = standing_on[0]
+    if len(bodies) == 1 and isinstance(ground, RigidGround):
+        (friction,) = frictions
+        if friction is None:
+            return RestrainedSetting(*numbers)
+        faults = [*sheared_tendon_faults(held), *jamming_faults(held.body, friction.kinetic)]
+        if faults:
+            raise AssemblyError(faults)
+        return SlidingRestrainedSetting(*numbers, (friction,), ground.si.impact)
+    slips = any(getattr(base.si, "friction", None) is not None for base in standing_on)
+    _refuse_many_modes(standing_on, slips)
+    checked = options.sliding is Sliding.CHECKED
+    if not slips or (checked and len(bodies) == 1):
+        return held
+    faults = sheared_tendon_faults(held) if any(held.rigid) and not checked else []
+    if checked:
+        faults.append("friction in a Stack is computed: give no sliding='checked', or no friction")
+    for k, (body, friction) in enumerate(zip(bodies, frictions, strict=True)):
+        if friction is not None and held.rigid[k]:
+            faults += [f"body {k + 1}: {one}" for one in jamming_faults(body, friction.kinetic)]
+    if options.small:
+        faults.append(SLIDING_AT_SMALL_ROTATION)
+    if faults:
+        raise AssemblyError(faults)
+    return SlidingStackSetting(*numbers, tuple(one or NO_SLIP for one in frictions))
+
+
+def _refuse_many_modes(bases: Sequence[Component], slips: bool) -> None:
+    """Refuse bodies whose contacts have more combinations than can be numbered."""
+    from rockframe.dynamics.chain.rows import BED_MODES, PAD_MODES, RIGID_MODES
+
+    count = 1
+    for base in bases:
+        if isinstance(base, RigidGround):
+            modes = RIGID_MODES
+        else:
+            modes = PAD_MODES if isinstance(base, TwoSpringSupport) else BED_MODES
+        count *= 2 * modes if slips else modes
+    if count > MAX_MODES:
+        raise AssemblyError([
+            f"the contacts of {len(bases)} bodies on these bases have {count:.2g} combinations, "
+            f"more than the {MAX_MODES:.2g} that can be numbered: give fewer bodies, or rigid "
+            "joints"
+        ])  # fmt: skip
+
+
+def sheared_tendon_faults(setting: StackSetting) -> list[str]:
+    """Return faults for tendons without depth below a joint: a slip would shear them there."""
+    return [
+        f"{link.name}: a Tendon without a depth is bent over the edge of its duct at the base, and "
+        "a block that slides shears it there: give the depth below the base at which it is fixed"
+        for link in setting.links
+        if isinstance(link.part, Tendon) and link.part.si.depth == 0.0
+    ]

@@ -7,7 +7,7 @@ import pytest
 
 import rockframe as rf
 from rockframe.results.along_steps import FRACTIONS, AlongSteps
-from rockframe.simulation.friction_checks import sliding_checks
+from rockframe.results.forces import sliding_checks
 from rockframe.solve.trajectory import Steps
 
 

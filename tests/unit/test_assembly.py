@@ -355,5 +355,7 @@ def test_parts_are_iterable_and_indexed_by_slot():
     assert list(system.parts) == [block(), pads(), pulse()]
     assert len(system.parts) == 3
     assert system.parts["pads"] == pads()
+    with pytest.raises(KeyError, match=r"the scene has no part 'soil'\. It has 'block'"):
+        system.parts["soil"]
     with pytest.raises(KeyError, match=r"the scene has no part 'pad'; was 'pads' meant.*'block'"):
         system.parts["pad"]

@@ -68,6 +68,17 @@ def test_inclined_motion_is_rotated_and_includes_gravity():
     assert slope.normal_gravity == pytest.approx(10.0 * c)
 
 
+def test_equations_of_sliding_have_the_components_of_gravity():
+    """Friction must bear g sin(i) too: the level equations would hold the block up to mu_s g."""
+    ground = rf.RigidGround(friction=0.5)
+    words = "g cos(i) in the place of g, and xg'' with g sin(i)"
+    texts = [
+        " ".join(rf.System(BLOCK, ground, inclination=angle).describe().split())
+        for angle in ("0 deg", "5 deg")
+    ]
+    assert [text.count(words) for text in texts] == [0, 2]
+
+
 def test_ladder_certificate_and_critical_scale_use_the_slope():
     pads = rf.TwoSpringSupport(frequency_ratio=20, damping_ratio=0.1)
     system = rf.System(BLOCK, pads, inclination="3 deg")

@@ -98,59 +98,50 @@ def read_part(name: str, arguments: Mapping[str, Any], owner: str) -> PlacedPart
         raise ComponentError(msg)
     x, y = (0.0, 0.0) if "at" not in values else read_point(values["at"], owner=place, name="at")
     read = {"body": _body, "outline": _outline, "mass": _point}.get(kind, _rectangle)
-    return read(name, values, (x, y), place)
+    mass, corners, top = read(values, place)
+    return PlacedPart(
+        name,
+        PlaneMass(mass.mass, mass.x + x, mass.y + y, mass.inertia),
+        tuple(OutlineCorner(f"{words}part {name!r}", a + x, b + y) for words, a, b in corners),
+        top + y,
+        stands=kind != "mass",
+    )
 
 
-def _rectangle(
-    name: str, values: Mapping[str, Any], at: tuple[float, float], owner: str
-) -> PlacedPart:
+_Shape = tuple[PlaneMass, Sequence[tuple[str, float, float]], float]
+"""Mass, corners with their names, and height of the top of a part, from its own origin."""
+
+
+def _rectangle(values: Mapping[str, Any], owner: str) -> _Shape:
     width, height = (_positive(values, word, LENGTH, owner=owner) for word in ("width", "height"))
     mass = read_mass(values, width * height, owner=owner)
-    (x, y), inertia = at, mass * (width * width + height * height) / 12.0
-    words = f"a corner of part {name!r}"
-    corners = tuple(
-        OutlineCorner(words, *corner) for corner in rectangle(0.5 * width, height, x, y)
-    )
-    return PlacedPart(name, PlaneMass(mass, x, y + 0.5 * height, inertia), corners, y + height)
+    inertia = mass * (width * width + height * height) / 12.0
+    corners = [("a corner of ", x, y) for x, y in rectangle(0.5 * width, height)]
+    return PlaneMass(mass, 0.0, 0.5 * height, inertia), corners, height
 
 
-def _outline(
-    name: str, values: Mapping[str, Any], at: tuple[float, float], owner: str
-) -> PlacedPart:
+def _outline(values: Mapping[str, Any], owner: str) -> _Shape:
     mass, corners = outline_mass(values["outline"], values, owner, "outline")
-    x, y = at
-    moved = tuple(
-        OutlineCorner(f"{corner.words} of part {name!r}", corner.x + x, corner.y + y)
-        for corner in corners
-    )
-    placed = PlaneMass(mass.mass, mass.x + x, mass.y + y, mass.inertia)
-    return PlacedPart(name, placed, moved, max(corner.y for corner in moved))
+    named = [(f"{corner.words} of ", corner.x, corner.y) for corner in corners]
+    return mass, named, max(corner.y for corner in corners)
 
 
-def _body(name: str, values: Mapping[str, Any], at: tuple[float, float], owner: str) -> PlacedPart:
+def _body(values: Mapping[str, Any], owner: str) -> _Shape:
     si = getattr(values["body"], "si", None)
     if not isinstance(si, BlockSI):
         msg = f"{owner} needs a Block as its body, got {short_repr(values['body'])}"
         raise ComponentError(msg)
-    x, y = at
-    placed = PlaneMass(si.mass, x + si.eccentricity, y + si.centre_height, si.inertia)
-    words = f"an end of the base of part {name!r}"
-    corners = (
-        OutlineCorner(words, x - si.half_width, y),
-        OutlineCorner(words, x + si.half_width, y),
-    )
-    return PlacedPart(name, placed, corners, y + si.height)
+    ends = [("an end of the base of ", x, 0.0) for x in (-si.half_width, si.half_width)]
+    return PlaneMass(si.mass, si.eccentricity, si.centre_height, si.inertia), ends, si.height
 
 
-def _point(name: str, values: Mapping[str, Any], at: tuple[float, float], owner: str) -> PlacedPart:
-    mass = _positive(values, "mass", MASS, owner=owner)
-    inertia = 0.0
+def _point(values: Mapping[str, Any], owner: str) -> _Shape:
+    mass, inertia = _positive(values, "mass", MASS, owner=owner), 0.0
     if "inertia" in values:
         inertia = to_si(
             values["inertia"], INERTIA, owner=owner, name="inertia", condition=NOT_NEGATIVE
         )
-    corner = OutlineCorner(f"part {name!r}", *at)
-    return PlacedPart(name, PlaneMass(mass, *at, inertia), (corner,), at[1], stands=False)
+    return PlaneMass(mass, 0.0, 0.0, inertia), [("", 0.0, 0.0)], 0.0
 
 
 def _positive(values: Mapping[str, Any], name: str, measure: Measure, *, owner: str) -> float:
@@ -158,32 +149,6 @@ def _positive(values: Mapping[str, Any], name: str, measure: Measure, *, owner: 
         msg = f"{owner} needs width and height; {name} is missing"
         raise ComponentError(msg)
     return to_si(values[name], measure, owner=owner, name=name, condition=POSITIVE)
-
-
-def _standing(kind: type[ComponentType], value: object, base: object, owner: str) -> ComponentType:
-    """Make a body of parts that are fixed to one another, on their common base."""
-    parts = _read(value, owner)
-    corners = [corner for part in parts for corner in part.corners]
-    top = max(part.top for part in parts)
-    reach = max(corner.x for corner in corners) - min(corner.x for corner in corners)
-    slack = ROUNDING * max(top, reach)
-    _check_above(parts, slack, owner)
-    on_ground = {
-        corner.x: part
-        for part in parts
-        if part.stands
-        for corner in part.corners
-        if corner.y <= slack
-    }
-    if base is None:
-        stance = _common_base(parts, sorted(on_ground), slack, owner)
-    else:
-        stance = _given_base(base, on_ground, slack, owner)
-    body_mass = combined_mass([part.mass for part in parts])
-    if not body_mass.inertia > 0.0:
-        msg = f"{owner}: all mass is in one point, so that the body has no inertia"
-        raise ComponentError(msg)
-    return shaped_body(kind, body_mass, stance, top, corners, owner)
 
 
 def _read(value: object, owner: str) -> list[PlacedPart]:
@@ -199,16 +164,6 @@ def _read(value: object, owner: str) -> list[PlacedPart]:
     return [
         read_part(str(name), cast("Mapping[str, Any]", part), owner) for name, part in parts.items()
     ]
-
-
-def _check_above(parts: Sequence[PlacedPart], slack: float, owner: str) -> None:
-    for part in parts:
-        if part.bottom < -slack:
-            msg = (
-                f"{owner}: part {part.name!r} reaches {-part.bottom:.6g} m below the ground, "
-                "from which heights are measured"
-            )
-            raise ComponentError(msg)
 
 
 def _common_base(
@@ -317,4 +272,32 @@ def from_parts(
     >>> print(f"{bookcase.centre_height:.4f}, {bookcase.eccentricity:.4f}")
     1.2679 meter, 0.0321 meter
     """
-    return _standing(cls, parts, base, f"{cls.__name__}.from_parts")
+    owner = f"{cls.__name__}.from_parts"
+    placed = _read(parts, owner)
+    corners = [corner for part in placed for corner in part.corners]
+    top = max(part.top for part in placed)
+    reach = max(corner.x for corner in corners) - min(corner.x for corner in corners)
+    slack = ROUNDING * max(top, reach)
+    for part in placed:
+        if part.bottom < -slack:
+            msg = (
+                f"{owner}: part {part.name!r} reaches {-part.bottom:.6g} m below the ground, "
+                "from which heights are measured"
+            )
+            raise ComponentError(msg)
+    on_ground = {
+        corner.x: part
+        for part in placed
+        if part.stands
+        for corner in part.corners
+        if corner.y <= slack
+    }
+    if base is None:
+        stance = _common_base(placed, sorted(on_ground), slack, owner)
+    else:
+        stance = _given_base(base, on_ground, slack, owner)
+    body_mass = combined_mass([part.mass for part in placed])
+    if not body_mass.inertia > 0.0:
+        msg = f"{owner}: all mass is in one point, so that the body has no inertia"
+        raise ComponentError(msg)
+    return shaped_body(cls, body_mass, stance, top, corners, owner)

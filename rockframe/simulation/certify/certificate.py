@@ -114,11 +114,11 @@ class Certificate:
         """Which further runs were made and what they showed, in words."""
         if not self.finished:
             return "No certificate: the run was not finished."
-        ends = _OutcomeWords(self)
-        near, flip = _scale_doubts(self, ends), _nearest_flip_words(self)
-        doubts = [*_accuracy_doubts(self, ends), *_parameter_doubts(self, ends), *near]
+        verdict = _verdict_words(self, self.base.overturned)
+        near, flip = _scale_doubts(self), _nearest_flip_words(self)
+        doubts = [*_accuracy_doubts(self), *_parameter_doubts(self), *near]
         if doubts:
-            text = f"{NEAR_WORDS}: the body {ends.verdict}, but {'; '.join(doubts)}."
+            text = f"{NEAR_WORDS}: the body {verdict}, but {'; '.join(doubts)}."
             near_scale = near and _flip_is_near(self)
             return text if near_scale or not flip else f"{text} {flip.capitalize()}."
         means = [tolerance_words(self.plan.accuracy), f"steps {SHORTER:g} times shorter"]
@@ -128,7 +128,7 @@ class Certificate:
         if self.base.in_motion:
             body = "To the end of the run, where it can still overturn, the body"
         text = (
-            f"{body} {ends.verdict} also with {', '.join(means[:-1])} and {means[-1]}, and with "
+            f"{body} {verdict} also with {', '.join(means[:-1])} and {means[-1]}, and with "
             f"every parameter up to {100.0 * self.certification.nudge:g} % larger or smaller"
         )
         scales = "; ".join(filter(None, [_scanned_range_words(self), flip]))
@@ -162,7 +162,13 @@ def certify(
     """Make the certificate of a run."""
     if base.overturned is None:
         return Certificate(certification, plan, base)
-    bare = plan.without_outputs()
+    bare, limits = plan.without_outputs(), system.setting.overturning_angles
+
+    def scaled(change: float) -> RunSummary | None:
+        """Make the run with a scaled motion or, without one, with a scaled start."""
+        other = scaled_plan(bare, 1.0 + change, limits)
+        return None if other is None else run(system, other)
+
     with warnings.catch_warnings():
         # the run itself has given them
         warnings.simplefilter("ignore", ModelWarning)
@@ -173,7 +179,8 @@ def certify(
         most = max(
             certification.runs - len(finer) - _number_of_runs(nudged), certification.runs // 4
         )
-        along = _scaled(system, bare, base, certification, run, most)
+        row = scales(certification.nudge, certification.reach)
+        along = scan(scaled, base, row, most=most, resolution=RESOLUTION)
     return Certificate(certification, plan, base, finer, nudged, along)
 
 
@@ -195,25 +202,6 @@ def _nudged(
         return scan(look, base, row, most=count, resolution=NUDGE_RESOLUTION, refine_flip=False)
 
     return [(words, along(scene_at)) for words, scene_at in every]
-
-
-def _scaled(
-    system: Assembly,
-    plan: Plan,
-    base: RunSummary,
-    certification: Certification,
-    run: Run,
-    most: int,
-) -> Scan:
-    """Scale the motion or, without one, the start."""
-    limits = system.setting.overturning_angles
-
-    def look(change: float) -> RunSummary | None:
-        other = scaled_plan(plan, 1.0 + change, limits)
-        return None if other is None else run(system, other)
-
-    row = scales(certification.nudge, certification.reach)
-    return scan(look, base, row, most=most, resolution=RESOLUTION)
 
 
 def _perturbed_run(system: Assembly, plan: Plan, run: Run) -> RunSummary | None:
@@ -244,26 +232,21 @@ NEAR_WORDS: Final = "Near the boundary"
 """Beginning of the sentence about such a verdict."""
 
 
-class _OutcomeWords:
-    """How runs end, in words: with overturning as the run's arguments define it."""
-
-    def __init__(self, found: Certificate) -> None:
-        stops = found.plan.stop_at_overturning
-        self._words = {
-            True: "overturns" if stops else "falls flat",
-            False: "stands" if stops else "does not fall flat",
-        }
-        self.verdict = self._words[bool(found.base.overturned)]
-        self.beyond = "overturn" if stops else "fall flat" if found.base.overturned else "come back"
-
-    def of(self, shown: RunSummary) -> str:
-        """Say how a further run ended."""
-        if shown.overturned is None:
-            return "the run cannot be finished"
-        return f"it {self._words[shown.overturned]}"
+def _verdict_words(found: Certificate, overturned: bool | None) -> str:
+    """Say how a run ends, with overturning as the run's arguments define it."""
+    if found.plan.stop_at_overturning:
+        return "overturns" if overturned else "stands"
+    return "falls flat" if overturned else "does not fall flat"
 
 
-def _accuracy_doubts(found: Certificate, ends: _OutcomeWords) -> Iterator[str]:
+def _ending(found: Certificate, shown: RunSummary) -> str:
+    """Say how a further run ended."""
+    if shown.overturned is None:
+        return "the run cannot be finished"
+    return f"it {_verdict_words(found, shown.overturned)}"
+
+
+def _accuracy_doubts(found: Certificate) -> Iterator[str]:
     """Say which runs of higher accuracy have another verdict, or come too near to another one."""
     if found.converged:
         return
@@ -271,9 +254,11 @@ def _accuracy_doubts(found: Certificate, ends: _OutcomeWords) -> Iterator[str]:
     others = [(words, other) for words, other in found.finer if other.overturned != verdict]
     if others:
         words, other = others[0]
-        yield f"with {words}{_and_more(others)} {ends.of(other)}"
+        yield f"with {words}{_and_more(others)} {_ending(found, other)}"
     elif not found.base.within_the_angle:
-        yield f"runs of higher accuracy {ends.beyond} in another way, or only just"
+        flat = "fall flat" if verdict else "come back"
+        ends = "overturn" if found.plan.stop_at_overturning else flat
+        yield f"runs of higher accuracy {ends} in another way, or only just"
     else:
         yield (
             f"its peak rotation is uncertain by {found.peak_error:.2g} rad, about "
@@ -281,20 +266,20 @@ def _accuracy_doubts(found: Certificate, ends: _OutcomeWords) -> Iterator[str]:
         )
 
 
-def _parameter_doubts(found: Certificate, ends: _OutcomeWords) -> Iterator[str]:
+def _parameter_doubts(found: Certificate) -> Iterator[str]:
     """Say which parameters change the verdict."""
     changed = [(words, scan) for words, scan in found.nudged if scan.flip is not None]
     if changed:
         words, scan = changed[0]
         flip, ended = scan.flip or 0.0, scan.ended or found.base
-        yield f"with the {words} {100.0 * flip:+.3g} %{_and_more(changed)} {ends.of(ended)}"
+        yield f"with the {words} {100.0 * flip:+.3g} %{_and_more(changed)} {_ending(found, ended)}"
         return
     lost = [words for words, scan in found.nudged if not scan.followed]
     if lost:
         yield f"the dependence of the verdict on the {lost[0]}{_and_more(lost)} was not resolved"
 
 
-def _scale_doubts(found: Certificate, ends: _OutcomeWords) -> list[str]:
+def _scale_doubts(found: Certificate) -> list[str]:
     """Say that a slightly different scale changes the verdict, or may change it."""
     margin, along, what = found.margin, found.along, _excitation(found.plan)
     if not margin <= _near_margin(found) or (along.followed and along.flip is None):
@@ -302,7 +287,9 @@ def _scale_doubts(found: Certificate, ends: _OutcomeWords) -> list[str]:
     if along.ended is not None and _flip_is_near(found):
         change = found.flip - 1.0
         way = "up" if change > 0.0 else "down"
-        return [f"with {what} scaled {way} by {_percent(abs(change))} {ends.of(along.ended)}"]
+        return [
+            f"with {what} scaled {way} by {_percent(abs(change))} {_ending(found, along.ended)}"
+        ]
     return [
         f"{found.certification.runs} runs were too few to resolve the dependence of the verdict on "
         f"the scale of {what} beyond {_percent(margin)}"

@@ -95,10 +95,7 @@ MAX_STEPS_PER_PERIOD: Final = 1e4
 
 
 def finer_plans(system: Assembly, plan: Plan, step: float) -> Iterator[tuple[str, Plan]]:
-    """Return the plans of runs of higher accuracy, each with what is finer in words.
-
-    `step` is the mean step of the run itself [s].
-    """
+    """Return the plans of finer runs, each with what is finer, by the mean step of the run [s]."""
     accuracy = plan.accuracy
     yield tolerance_words(accuracy), replace(plan, accuracy=with_tighter_tolerance(accuracy))
     yield (

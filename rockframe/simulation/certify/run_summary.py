@@ -91,6 +91,8 @@ def run_summary(
     duration: float,
     *,
     in_motion: bool,
+    slides: float,
+    slip: float,
 ) -> RunSummary:
     """Return the summary of a run, from its events by names of the schema and its length [s]."""
     rates = np.abs(events["angular_velocity_before"])
@@ -112,7 +114,9 @@ def run_summary(
         summary.status,
         peak_share,
         in_motion,
+        slides,
         lifted=not math.isnan(summary.first_uplift_time),
+        slip=slip,
     )
 
 

@@ -8,8 +8,8 @@ import xarray as xr
 
 from rockframe.arguments import checked_choice, checked_list, checked_name, is_iterable
 from rockframe.errors import ComponentError, SchemaError, short_repr
+from rockframe.results.forces import share_words
 from rockframe.results.schema import with_labels, with_variables
-from rockframe.simulation.friction_checks import share_words
 from rockframe.studies.confidence import read_confidence
 from rockframe.studies.fragility.labelling import BoundSettings, fragility_dataset
 from rockframe.studies.fragility.likelihood import Bands, Fit

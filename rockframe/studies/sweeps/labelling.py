@@ -12,6 +12,7 @@ import numpy as np
 import xarray as xr
 
 from rockframe.errors import ModelWarning, SolverWarning, warn
+from rockframe.results.forces import count_slides
 from rockframe.results.joining import CASE_COUNT
 from rockframe.results.outcome import MIN_REPORTED_SLIP, PEAK_SLIPS, overturned_from_status
 from rockframe.results.points import BodyPoint, point_labels
@@ -22,7 +23,6 @@ from rockframe.results.variables.runs import EVENTS_AND_SCALARS, RunStatus
 from rockframe.results.variables.studies import CASE, MESSAGE, MOTION, REPEATED, VERDICT_CHANGED
 from rockframe.results.variables.variable import TIME
 from rockframe.signals.arrays import AnyArray
-from rockframe.simulation.friction_checks import count_slides
 from rockframe.simulation.run import NONE
 from rockframe.studies.sweeps.axes import OWNER, Grid, labels_in_unit
 from rockframe.studies.sweeps.chunk import DRIVER, SCREEN, CaseResults, CollectedResults, Driver

@@ -77,6 +77,31 @@ def test_drawn_points_match_point_displacements(parts):
         )
 
 
+@pytest.mark.parametrize("loaded", [1, 2])
+def test_drawn_points_of_a_stack_with_a_mass_match_body_motion(loaded):
+    """A mass beside the axis moves the centre of mass to which displacements refer."""
+    mass = rf.Load(at=("0.3 m", "1 m"), moving_mass="1 t", on_body=loaded)
+    stack = rf.Stack(BLOCK, rf.Block(width="2 m", height="3 m", mass="15 t"), interfaces=[PADS],
+                     offsets=["5 cm"])  # fmt: skip
+    system = rf.System(stack, PADS, mass)
+    run = system.simulate(PULSE, duration="1 s", points={"top": ("0.4 m", "4 m")})
+    moving = SceneHistory(run, "state", 1.0)
+    lower = system.setting.bodies[1]
+    for time in range(0, run.sizes["time"], 40):
+        placement = moving.placement_at(time)
+        (top,) = placement.block(np.array([(0.45, 7.0)]))
+        moved = [
+            run[f"point_{way}_displacement"][0, time].item() for way in ("horizontal", "vertical")
+        ]
+        np.testing.assert_allclose(top, np.array([0.45, 7.0]) + moved, atol=1e-12)
+        centre = np.array([lower.eccentricity, lower.centre_height])
+        (drawn,) = placement.lower(0, centre[None])
+        across, up = (
+            run[f"body_{way}_displacement"][1, time].item() for way in ("horizontal", "vertical")
+        )
+        np.testing.assert_allclose(drawn, centre + np.array([across, up]), atol=1e-12)
+
+
 def test_drawn_soil_contact_matches_contact_length():
     run = rf.System(EVEN, SOIL).simulate(PULSE, free_vibration="2 s")
     lengths = run.contact_length.to_numpy()
