@@ -111,6 +111,8 @@ def model_ladder(system: System) -> dict[str, System]:
     link_words = " and ".join(
         dict.fromkeys(_LINK_WORDS.get(type(link), type(link).__name__) for link in links)
     )
+    if len(system.parts.walls) > 1:
+        link_words = link_words.replace(_LINK_WORDS[RearWall], "walls")
     with warnings.catch_warnings():
         # a simpler model may warn of effects that it leaves out; the scene has warned before
         warnings.simplefilter("ignore", ModelWarning)

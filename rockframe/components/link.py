@@ -300,7 +300,7 @@ REBOUND_RANGE = Condition("from -1 to 0", lambda value: -1.0 <= value <= 0.0)
 RESTITUTION_RANGE = Condition("from 0 to 1", lambda value: 0.0 <= value <= 1.0)
 
 
-_ELASTIC_PARAMETERS: Final = ("damping", "gap", "height")
+_ELASTIC_PARAMETERS: Final = ("damping", "gap", "height", "name")
 
 
 class _ReboundParameter(Declared[Any, WallImpactLike, WallImpact]):
@@ -395,6 +395,11 @@ class RearWall(Link):
         default=None,
     )  # fmt: skip
     on_body: Count[int] = _body_parameter()
+    name: Text[None] = Text(
+        doc="Name of an elastic wall in results; wall unless given, with a number where several "
+        "have none.",
+        default=None,
+    )
 
     @property
     def elastic(self) -> bool:
@@ -423,4 +428,4 @@ class RearWall(Link):
         if numbers.stiffness is not None and numbers.restitution is not WallImpact.SORRENTINO:
             msg = "RearWall: give restitution or stiffness, not both; a spring has no restitution"
             raise ComponentError(msg)
-        return SIValues(**vars(numbers), name="wall")
+        return numbers

@@ -97,7 +97,12 @@ def _faults_at_point(
     own = np.zeros(count)
     faults.check(f"{name}.spring", law.spring(point, own))
     faults.check(f"{name}.energy", law.energy(point, own))
-    faults.check(f"{name}.force", law.force(0, point, own))
+    for share in (1.0, 0.99, 1.01):  # statics take differences about the settlement
+        beside = point._replace(
+            pressed=share * point.settlement, rise=(1.0 - share) * point.settlement
+        )
+        what = f"{name}.force" if share == 1.0 else f"{name}.force at {share:g} of the settlement"
+        faults.check(what, law.force(0, beside, own))
     faults.check(f"{name}.force_rate", law.force_rate(0, point, own))
     faults.check(f"{name}.power", law.power(0, point, own))
     faults.check(f"{name}.sunk", law.sunk(own))

@@ -182,7 +182,7 @@ def _check_swings(system: System) -> None:
             "only, about which the swings to both sides are told apart"
         )
         raise ComponentError(msg)
-    if system.parts.wall is not None and not system.parts.wall.elastic:
+    if system.parts.rigid_wall is not None:
         msg = (
             f"{OWNER}: the block is before a rigid RearWall and rocks to one side only; expected "
             "a block that swings to both sides, without a wall, or before one with a stiffness"

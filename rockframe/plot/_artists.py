@@ -8,7 +8,7 @@ from typing import Any, Final
 
 import numpy as np
 
-from rockframe.components import Component, Load
+from rockframe.components import Component, Load, RearWall
 from rockframe.notebook import readable_arguments
 from rockframe.plot._axes import (
     BLUE,
@@ -276,8 +276,7 @@ class SceneArtist:
 
     def set_limits(self, placements: Iterable[Placement]) -> None:
         """Set limits that contain the scene and the marked points at all instants."""
-        wall = self.builder.geometry.wall
-        shown_parts = [] if wall is None else [wall]
+        shown_parts = list(self.builder.geometry.walls)
         for placement in placements:
             layout = self.builder.layout_at(placement)
             shown_parts += (layout.block, layout.ground, *layout.lower_bodies)
@@ -309,9 +308,8 @@ class SceneArtist:
         """Draw all artists, or move them."""
         layout = self.builder.layout_at(placement)
         self._draw_ground(layout)
-        if self.builder.geometry.wall is not None:
-            wall = self._draw_polygon("wall", self.builder.geometry.wall, GREY, 2)
-            wall.set(hatch="///")
+        for number, wall in enumerate(self.builder.geometry.walls):
+            self._draw_polygon(f"wall {number}", wall, GREY, 2).set(hatch="///")
         if layout.cap is not None:
             self._draw_polygon("cap", layout.cap, ORANGE, 3)
         for number, body in enumerate(layout.lower_bodies):
@@ -410,10 +408,16 @@ _DRAWN_ARGUMENTS: Final = ("name", "on", "to", "on_body", "to_body", "depth")
 def part_labels(parts: Parts, geometry: Geometry, units: DisplayUnits) -> dict[str, str]:
     """Return the names of the parts of a scene, with their parameters, by their slots."""
     labels: dict[str, list[str]] = {}
-    for slot in ("block", "wall", "pads", "cap", "soil"):
+    for slot in ("block", "pads", "cap", "soil"):
         part = parts.components.get(slot)
         if part is not None:
             labels[slot] = [type(part).__name__, *_parameter_texts(part, units)]
+    for number, wall in enumerate(parts.walls):
+        title = type(wall).__name__
+        if len(parts.walls) > 1:
+            names = [name for name, link in parts.named_links if isinstance(link, RearWall)]
+            title = f"{as_label(names[number])}: {title}"
+        labels[f"wall {number}"] = [title, *_parameter_texts(wall, units, ("name",))]
     if parts.frame is not None:
         column = [f"column {text}" for text in _parameter_texts(parts.frame.column, units)]
         frame_texts = _parameter_texts(parts.frame, units)
@@ -438,7 +442,7 @@ def part_labels(parts: Parts, geometry: Geometry, units: DisplayUnits) -> dict[s
     for number, (name, link) in enumerate(parts.named_links):
         lines = [as_label(name), *_parameter_texts(link, units, _DRAWN_ARGUMENTS)]
         if number < len(geometry.links):
-            labels[f"tie {number}"] = lines[:1] if link is parts.wall else lines
+            labels[f"tie {number}"] = lines[:1] if isinstance(link, RearWall) else lines
         elif isinstance(link, Load):  # not drawn, therefore listed with its body
             body = link.si.on_body - 1
             labels[f"stack {body - 1}" if body else "block"] += _wrapped_lines(lines)

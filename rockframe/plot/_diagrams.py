@@ -281,8 +281,8 @@ def energies(
 def _static_moments(system: System, largest: float) -> xr.Dataset:
     left, right = system.setting.overturning_angles
     largest = read_positive(largest, "moment_rotation", "largest")
-    wall = system.parts.wall
-    if wall is not None and not wall.elastic:  # the body is held to the other side only
+    wall = system.parts.rigid_wall
+    if wall is not None:  # the body is held to the other side only
         left, right = (left, 0.0) if wall.direction > 0.0 else (0.0, right)
     angles = np.linspace(-largest * left, largest * right, _ANGLE_COUNT)
     return system.moment_rotation((angles, str(ANGLE.unit)))

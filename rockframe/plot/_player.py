@@ -284,8 +284,8 @@ def _part_layers(history: SceneHistory, layouts: Sequence[Layout]) -> Iterator[_
         yield _Layer("soil", "ground", SOIL_COLOUR, 0.35, moving(_surface_corners))
     for outline in upright.bodies:
         yield _Layer("at rest", "dashes", "soft", 0.0, still(outline))
-    if history.geometry.wall is not None:
-        yield _Layer("wall", "outline", "soft", 0.35, still(history.geometry.wall))
+    for wall in history.geometry.walls:
+        yield _Layer("wall", "outline", "soft", 0.35, still(wall))
     if first.cap is not None:
         yield _Layer("cap", "outline", ORANGE, 0.3, moving(lambda layout: layout.cap))
     yield from each("lower_bodies", "outline", ORANGE, 0.25)

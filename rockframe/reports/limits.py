@@ -85,7 +85,7 @@ LIMITS: Final = (
         "Walls",
         "An impact on a stiff wall is instantaneous, and leaves the share of the speed that its "
         "law of restitution gives.",
-        lambda parts: parts.wall is not None,
+        lambda parts: parts.rigid_wall is not None,
     ),
     Limit(
         "Rocking frames",

@@ -187,7 +187,13 @@ def read_continuation(dataset: xr.Dataset, system: Assembly, faults: list[str]) 
 def _cut_words(dataset: xr.Dataset) -> str:
     """Say that the last histories of a run were cut off; empty if they were not."""
     (name,) = OVER_TIME
-    if name not in dataset.coords or dataset[name].attrs.get("units") != "s":
+    if name not in dataset.coords:
+        known = [key for key in map(str, dataset.data_vars) if key in SCHEMA]
+        histories = [key for key in known if SCHEMA[key].dims == OVER_TIME]
+        lost = any(name not in dataset[key].dims for key in histories)
+        words = "initial is a part of a run, whose time has been dropped: give all of it"
+        return words if lost else ""
+    if dataset[name].attrs.get("units") != "s":
         return ""
     times = np.atleast_1d(dataset[name])[-2:].tolist()
     described: dict[str, Any] = json.loads(str(dataset.attrs.get("run_json", "{}")))

@@ -138,7 +138,7 @@ def max_stored_energy(system: Assembly, rotation: float) -> float:
     Infinite where a slope, links, a wall, a beam or a user's own part may add to it.
     """
     parts, setting = system.parts, system.setting
-    if parts.links or parts.wall or parts.frame or parts.own or not setting.slope.level:
+    if parts.links or parts.walls or parts.frame or parts.own or not setting.slope.level:
         return math.inf
     body = setting.body
     return body.mass * setting.gravity * max(body.left, body.right) * abs(rotation)

@@ -136,6 +136,7 @@ def _stack(slot: str, parts: Parts, options: Options) -> StackSetting:
     return stack_setting(blocks, offsets, bases, options, parts.links)
 
 
+_LINKS: Final = "links: Restrainer, Tendon, Load, elastic RearWall (one or several)"
 _BLOCK_ON_CAP = frozenset({"block", "pads", "cap", "soil"})
 
 _BUILTIN_SCENES: Final = (
@@ -175,7 +176,7 @@ _BUILTIN_SCENES: Final = (
     Scene("Stack + WinklerSoil", frozenset({"stack", "soil"}), partial(_stack, "soil")),
     *(
         Scene(
-            f"{upper} + {lower}Restrainer (one or several)",
+            f"{upper} + {lower}{_LINKS}",
             frozenset({slot, under, RESTRAINER}) - {"ground"},
             partial(_stack, under),
         )

@@ -45,8 +45,8 @@ def combination_faults(parts: Parts) -> list[str]:
         faults.append(
             f"RigidGround and {others} are both given; rigid ground carries a block directly"
         )
-    if parts.wall is not None and not parts.wall.elastic:
-        faults += _stiff_wall_faults(parts.wall, parts)
+    if parts.rigid_wall is not None:
+        faults += _stiff_wall_faults(parts.rigid_wall, parts)
     if parts.links and parts.frame is None:
         faults += _link_faults(parts)
     if cap is not None and soil is None:
@@ -70,7 +70,11 @@ def _class_names(*parts: Component | None) -> str:
 def _stiff_wall_faults(wall: RearWall, parts: Parts) -> list[str]:
     """Return the faults of a stiff wall with other parts: its laws are impacts on rigid ground."""
     base = parts.pads or parts.soil
-    others = _class_names(parts.pads, parts.soil, parts.cap, parts.stack, parts.frame, *parts.links)
+    links = [link for link in parts.links if not isinstance(link, RearWall)]
+    others = _class_names(parts.pads, parts.soil, parts.cap, parts.stack, parts.frame, *links)
+    walls = "the wall" if len(parts.walls) == 1 else "each wall"
+    if len(parts.walls) > 1:
+        others = " and ".join(filter(None, ["another RearWall", others]))
     if not others:
         if wall.si.on_body == 1:
             return []
@@ -78,7 +82,7 @@ def _stiff_wall_faults(wall: RearWall, parts: Parts) -> list[str]:
     fault = f"a RearWall and {others} are both given; a wall stands behind a Block on rigid ground"
     if parts.frame is not None or parts.cap is not None:
         return [fault]
-    yields = "give the wall a stiffness and a damping in place of its law"
+    yields = f"give {walls} a stiffness and a damping in place of its law"
     if parts.block is None:
         return [f"{fault}, unless it yields: {yields}"]
     elastic = equivalent_wall(wall, parts.block.si)
@@ -240,7 +244,7 @@ def _tendon_and_wall_faults(parts: Parts) -> list[str]:
                 )
         elif link.si.height is not None and link.si.height > body.height * _EDGE_TOLERANCE:
             faults.append(
-                f"RearWall: height is {link.si.height:.6g} m, above the top of body "
+                f"{name}: its height is {link.si.height:.6g} m, above the top of body "
                 f"{link.si.on_body} at {body.height:.6g} m"
             )
     return faults
@@ -279,11 +283,10 @@ def unused_option_cautions(parts: Parts, options: Options) -> list[str]:
 
 def _block_slides(parts: Parts, options: Options) -> bool:
     """Whether a block slides on what it stands on."""
-    behind_wall = parts.wall is not None and not parts.wall.elastic
     of_stages = parts.cap is not None and options.coupling is Coupling.CASCADE
     under = parts.pads or parts.soil or parts.ground
     slippery = under is not None and base_friction(under, options) is not None
-    return slippery and not (behind_wall or of_stages)
+    return slippery and parts.rigid_wall is None and not of_stages
 
 
 def size_faults(parts: Parts, options: Options) -> list[str]:

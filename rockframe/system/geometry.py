@@ -56,7 +56,7 @@ class Geometry:
     # places of the columns under a beam, to the right of the middle; the block is one column
     columns: tuple[float, ...] = ()
     beam: Array | None = None  # outline of the beam on the columns
-    wall: Array | None = None  # outline of a wall behind the block
+    walls: tuple[Array, ...] = ()  # outlines of walls beside bodies
 
     @property
     def base_level(self) -> float:
@@ -111,7 +111,7 @@ def geometry_of(scene: Assembly) -> Geometry:
         bodies = parts.stack.si.bodies
         for under, offset in zip(bodies[:0:-1], parts.stack.si.offsets[-2::-1], strict=True):
             places.insert(0, (places[0][0] + offset, places[0][1] + under.height))
-    (beside, level), drawn = places[0], 0 if parts.wall is None else parts.wall.si.on_body - 1
+    beside, level = places[0]
     if setting.stacked and cap is not None:
         level = 2.0 * cap.half_height
     return Geometry(
@@ -135,17 +135,18 @@ def geometry_of(scene: Assembly) -> Geometry:
         links=_linked_points(setting),
         columns=() if frame is None else tuple(column_positions(frame.si)),
         beam=None if frame is None else np.array(frame_outlines(frame.si)[-1]),
-        wall=_wall_outline(parts.wall, bodies[drawn], places[drawn]),
+        walls=tuple(
+            _wall_outline(wall, bodies[wall.si.on_body - 1], places[wall.si.on_body - 1])
+            for wall in parts.walls
+        ),
     )  # fmt: skip
 
 
-def _wall_outline(wall: RearWall | None, body: BlockSI, place: tuple[float, float]) -> Array | None:
+def _wall_outline(wall: RearWall, body: BlockSI, place: tuple[float, float]) -> Array:
     """Return the outline of a wall in drawings: as high and as thick as its body.
 
     `place` is the middle of the body's base, from the middle of the lowest one.
     """
-    if wall is None:
-        return None
     beside = wall.direction * (2.0 * body.half_width + (wall.given.gap or 0.0))
     return _rectangle(body.half_width, body.height, place[0] + beside, place[1])
 
@@ -215,8 +216,7 @@ def scene_polygons(geometry: Geometry) -> list[Polygon]:
     reach, depth = 1.7 * half, 0.5 * half
     band = _rectangle(reach, depth, y=-depth - below)
     polygons = [("ground" if geometry.soil_settlement is None else "soil", band)]
-    if geometry.wall is not None:
-        polygons.append(("ground", geometry.wall))
+    polygons += [("ground", wall) for wall in geometry.walls]
     if geometry.cap_outline is not None:
         polygons.append(("cap", geometry.cap_outline))
     polygons += [("cap", body.outline) for body in geometry.lower]

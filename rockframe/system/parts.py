@@ -59,7 +59,10 @@ _KINDS: Final[dict[type, PartKind]] = {
 }
 
 RESTRAINER: Final = "restrainer"
-"""The slot of links; further links of a scene have numbered slots."""
+"""The slot of links other than walls."""
+WALL: Final = "wall"
+SLOTS_OF_SEVERAL: Final = (RESTRAINER, WALL)
+"""Slots that several parts may fill; the slots of all but the first have a number."""
 BUILTIN_SLOTS: Final = tuple(dict.fromkeys(kind.slot for kind in _KINDS.values()))
 """Slots of the package's own parts, in a fixed order; `motion` is the last."""
 INFINITE_COEFFICIENT: Final = 1e8
@@ -81,7 +84,7 @@ def add_part_class(of: type, kind: PartKind) -> None:
 def unnumbered_slot(slot: str) -> str:
     """Return a slot without its number: `restrainer` for `restrainer_2`."""
     head, _, number = slot.rpartition("_")
-    return head if head == RESTRAINER and number.isdigit() else slot
+    return head if head in SLOTS_OF_SEVERAL and number.isdigit() else slot
 
 
 def registered_class(of: type) -> type | None:
@@ -179,11 +182,16 @@ def _registration_hint(kind: type) -> str:
 
 
 def link_labels(parts: Sequence[Link]) -> list[str]:
-    """Return the names of links in results: their own, or a number."""
-    return [
-        part.si.name or f"{'load' if isinstance(part, Load) else 'restrainer'} {i}"
-        for i, part in enumerate(parts, 1)
-    ]
+    """Return the names of links in results: their own, or a number; a wall may be the only one."""
+    walls = [part for part in parts if isinstance(part, RearWall) and not part.si.name]
+    labels = list[str]()
+    for i, part in enumerate(parts, 1):
+        label = f"{'load' if isinstance(part, Load) else 'restrainer'} {i}"
+        if isinstance(part, RearWall):
+            before = sum(isinstance(other, RearWall) and not other.si.name for other in parts[:i])
+            label = WALL if len(walls) == 1 else f"{WALL} {before}"
+        labels.append(part.si.name or label)
+    return labels
 
 
 @dataclass(frozen=True)
@@ -194,10 +202,13 @@ class Parts:
     filled: tuple[tuple[str, Component | GroundMotion], ...] = ()
     # all parts but the motion, by their slots
     components: dict[str, Component] = field(init=False, repr=False, compare=False)
-    # own: parts in slots of users' own scenes, by slots; links: all links, elastic walls among
-    # them, loads last; signature: names of the filled slots without numbers, motion and ground, an
-    # elastic wall counting as a restrainer; then the parts in the shipped slots
+    # own: parts in slots of users' own scenes, by slots; walls: all walls, rigid_wall: the first of
+    # them that is not elastic; links: all links, elastic walls among them, loads last; signature:
+    # names of the filled slots without numbers, motion and ground, elastic walls counting as
+    # restrainers; then the parts in the shipped slots
     own: dict[str, Component] = field(init=False, repr=False, compare=False)
+    walls: tuple[RearWall, ...] = field(init=False, repr=False, compare=False)
+    rigid_wall: RearWall | None = field(init=False, repr=False, compare=False)
     links: tuple[Link, ...] = field(init=False, repr=False, compare=False)
     signature: frozenset[str] = field(init=False, repr=False, compare=False)
     block: Block | None = field(init=False, repr=False, compare=False)
@@ -215,20 +226,23 @@ class Parts:
         vars(self).update({slot: slots.get(slot) for slot in BUILTIN_SLOTS if slot != RESTRAINER})
         components = {slot: part for slot, part in slots.items() if slot != "motion"}
         kinds = {slot: unnumbered_slot(slot) for slot in components}
-        stiff = self.wall if self.wall is not None and not self.wall.elastic else None
+        walls = tuple(part for part in components.values() if isinstance(part, RearWall))
+        rigid = [wall for wall in walls if not wall.elastic]
         links = [
             component
             for component in components.values()
-            if isinstance(component, Link) and component is not stiff
+            if isinstance(component, Link) and component not in rigid
         ]
         signature = frozenset(kinds.values()) - {"ground"}
-        if self.wall is not stiff:
-            signature = signature - {"wall"} | {RESTRAINER}
+        if walls and not rigid:
+            signature = signature - {WALL} | {RESTRAINER}
         vars(self).update(
             components=components,
             own={
                 slot: components[slot] for slot, kind in kinds.items() if kind not in BUILTIN_SLOTS
             },
+            walls=walls,
+            rigid_wall=rigid[0] if rigid else None,
             links=tuple(sorted(links, key=lambda part: isinstance(part, Load))),
             signature=signature,
         )
@@ -306,8 +320,8 @@ def sort_parts(values: Sequence[object], faults: list[str]) -> Parts:
             faults.append(unknown_part_fault(part))
             continue
         slot = _KINDS[kind].slot
-        if slot == RESTRAINER:
-            count = sum(unnumbered_slot(filled) == RESTRAINER for filled in slots)
+        if slot in SLOTS_OF_SEVERAL:
+            count = sum(unnumbered_slot(filled) == slot for filled in slots)
             slot = f"{slot}_{count + 1}" if count else slot
         elif slot in slots:
             name = type(part).__name__

@@ -205,7 +205,7 @@ def test_wall_in_statics_studies_figures_and_files(tmp_path):
     run.to_netcdf(tmp_path / "wall.nc")
     with xr.open_dataset(tmp_path / "wall.nc") as read:
         assert rf.System.from_dataset(read).parts.wall == rf.RearWall(side="right")
-    wall = LayoutBuilder(geometry_of(system.assembly)).geometry.wall
+    (wall,) = LayoutBuilder(geometry_of(system.assembly)).geometry.walls
     np.testing.assert_allclose(wall[:, 0].min(), 0.15)
     rf.plot.state(run)
     assert list(rf.model_ladder(system)) == [

@@ -699,6 +699,14 @@ NOTHING = {name: lambda *_: 0.0 for name in ("force_rate", "power")}
     [
         ({"energy": lambda self, point, own: math.nan}, "energy must be a finite number, got nan"),
         ({"force_rate": lambda *_: None}, "force_rate must be a finite number, got None"),
+        (
+            {
+                "force": lambda self, state, point, own: (
+                    point.pressed if point.rise == 0 else math.nan
+                )
+            },
+            "YieldingPad.force at 0.99 of the settlement must be a finite number, got nan",
+        ),
         ({"spring": lambda self, point: 1.0}, "takes 2 positional arguments but 3 were given"),
         (
             {"rates": lambda *_: (0.0, 0.0), **NOTHING},

@@ -53,6 +53,11 @@ SCENES = {
         (BLOCK, PADS, rf.RearWall(stiffness="1 MN/m")), "RearWall.stiffness", ["1 MN/m", "2 MN/m"],
         ("block", "pads"), '[wall]\nstiffness = "1 MN/m"\n',
     ),
+    "pads between elastic walls": (
+        (BLOCK, PADS, *(rf.RearWall(side=one, stiffness="1 MN/m") for one in ("left", "right"))),
+        "wall_2.stiffness", ["1 MN/m", "2 MN/m"], ("block", "pads"),
+        '[[wall]]\nstiffness = "1 MN/m"\n[[wall]]\nside = "right"\nstiffness = "1 MN/m"\n',
+    ),
     "frame": ((BENT,), "beam_mass", ["0 t", "6 t"], ("frame",), ""),
     "frame with tendons": (
         (BENT, rf.Tendon(stiffness="0.2 MN/m", preload="5 kN")), "preload", ["5 kN", "9 kN"],
@@ -89,7 +94,10 @@ SCENES[ON_CAP] = (
     '[soil]\nstiffness = "20 MPa"\ndamping_ratio = 0.2\n',
 )  # fmt: skip
 SLIPPERY = TIED | {MIXED, ON_CAP}
-HAS_LINK = TIED | {"elastic wall", "elastic wall on pads", "frame with tendons", "tendon"}
+HAS_LINK = TIED | {
+    "elastic wall", "elastic wall on pads", "pads between elastic walls", "frame with tendons",
+    "tendon",
+}  # fmt: skip
 
 
 @pytest.fixture(autouse=True)

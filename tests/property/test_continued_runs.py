@@ -138,11 +138,12 @@ def test_invalid_continuations_are_refused():
         (lambda whole: whole.isel(time=slice(None, None, 7)).isel(time=slice(-1)), "up to"),
         (lambda whole: whole.isel(time=[0]), "up to 0 s; .* give all of it$"),
         (lambda whole: whole.isel(time=[]), "up to 0 s; .* give all of it$"),
+        (lambda whole: whole.isel(time=3, drop=True), "whose time has been dropped"),
     ],
 )
 def test_a_part_of_a_run_is_not_continued_from_the_end_of_the_whole(part, words):
     """A selection in time keeps the attributes of the run, and its end with them."""
-    with pytest.raises(AssemblyError, match=f"a part of a run, {words}"):
+    with pytest.raises(AssemblyError, match=rf"a part of a run, {words}"):
         SCENES["pads"].simulate(MOTION, initial=part(unbroken_run("pads")), duration="0.1 s")
 
 

@@ -48,16 +48,19 @@ def test_wall_limits_rotation_and_preserves_energy_balance(base, accuracy, most)
     assert float(other.peak_rotation) == pytest.approx(float(run.peak_rotation), rel=1e-9)
 
 
-def test_rocking_against_a_wall_matches_reference_solution():
-    """Housner's block whose upper left corner meets a spring at a gap."""
-    b, h, mass, stiffness, gap, gravity = 0.5, 2.0, 4000.0, 4e5, 0.01, 9.80665
+@pytest.mark.parametrize("sides", [("left",), ("left", "right")], ids=" and ".join)
+def test_rocking_against_walls_matches_reference_solution(sides):
+    """Housner's block whose upper corners meet a spring on each side with a wall, at gaps."""
+    b, h, mass, stiffness, gravity = 0.5, 2.0, 4000.0, 4e5, 9.80665
+    gaps = {"left": 0.01, "right": 0.025}
     radius, theta = math.hypot(b, h), math.atan2(b, h)
     inertia, rebound = 4.0 / 3.0 * mass * radius**2, 1.0 - 1.5 * math.sin(theta) ** 2
 
     def slope(_, z, side):
-        pressed = max(-2.0 * h * math.sin(z[0]) - gap, 0.0) if side < 0.0 else 0.0
+        wall = "left" if side < 0.0 else "right"  # the body leans to this side
+        pressed = max(side * 2.0 * h * math.sin(z[0]) - gaps[wall], 0.0) if wall in sides else 0.0
         moment = -mass * gravity * radius * math.sin(side * theta - z[0])
-        return z[1], (moment + stiffness * pressed * 2.0 * h * math.cos(z[0])) / inertia
+        return z[1], (moment - side * stiffness * pressed * 2.0 * h * math.cos(z[0])) / inertia
 
     def lands(_, z, side):
         return side * z[0]
@@ -74,14 +77,68 @@ def test_rocking_against_a_wall_matches_reference_solution():
         found[inside] = run.sol(times[inside])[0]
         now, side = run.t[-1], -side
         state = np.array([side * 1e-16, rebound * run.y[1, -1]])
-    wall = rf.RearWall(side="left", stiffness=f"{stiffness} N/m", gap=f"{gap} m")
-    ours = rf.System(BLOCK, wall).simulate(
+    walls = [
+        rf.RearWall(side=side, stiffness=f"{stiffness} N/m", gap=f"{gaps[side]} m")
+        for side in sides
+    ]
+    ours = rf.System(BLOCK, *walls).simulate(
         initial=rf.InitialState(rotation="0.1 rad"), duration="1.6 s", output_step="0.01 s",
         accuracy="reference",
     )  # fmt: skip
     assert found.min() < -0.003
-    assert float(ours.peak_restrainer_force[0]) > 1e3
+    assert (ours.peak_restrainer_force > 1e3).all()
     np.testing.assert_allclose(ours.rotation, found, rtol=0.0, atol=1e-7 * theta)
+
+
+def test_block_between_walls_keeps_its_energy_and_mirrors():
+    left = rf.RearWall(stiffness="2 MN/m", damping="10 kN*s/m", gap="5 mm")
+    right = rf.RearWall(side="right", stiffness="1 MN/m", gap="12 mm", height="3 m")
+    plan = {"free_vibration": "0.5 s", "accuracy": "reference"}
+    run = rf.System(BLOCK, PADS, left, right).simulate(PULSE, outputs=("energy",), **plan)
+    mirrored = (left.replace(side="right"), right.replace(side="left"))
+    other = rf.System(BLOCK, PADS, *mirrored).simulate(PULSE.scaled(-1.0), **plan)
+    assert (run.peak_restrainer_force > 1e3).all()
+    assert float(run.energy_residual) < 1e-8
+    np.testing.assert_allclose(other.rotation, -run.rotation, rtol=0.0, atol=1e-9)
+    np.testing.assert_allclose(other.restrainer_force, run.restrainer_force, rtol=1e-6, atol=1e-3)
+
+
+def test_a_second_wall_that_is_not_reached_changes_nothing():
+    wall = rf.RearWall(stiffness="2 MN/m", damping="10 kN*s/m", gap="5 mm")
+    far = wall.replace(side="right", gap="100 m")
+    one, two = (
+        rf.System(BLOCK, PADS, *walls).simulate(PULSE, free_vibration="0.5 s")
+        for walls in ([wall], [wall, far])
+    )
+    np.testing.assert_allclose(two.rotation, one.rotation, rtol=0.0, atol=1e-9)
+    assert float(two.peak_restrainer_force[1]) == 0.0
+
+
+def test_several_walls_have_names_and_all_are_elastic():
+    left = rf.RearWall(stiffness="1 MN/m")
+    right = left.replace(side="right")
+    plinth = rf.Block(width="2 m", height="1 m", mass="9 t")
+    stack = rf.Stack(BLOCK, plinth, interfaces=[rf.RigidGround()])
+    tie = rf.Restrainer(on=("0 m", "3 m"), to=("3 m", "3 m"), stiffness="1 kN/m")
+    stop = left.replace(on_body=2, name="stop")
+    system = rf.System(stack, left, stop, tie, right)
+    names = [name for name, _ in system.parts.named_links]
+    assert names == ["wall 1", "stop", "wall 2", "restrainer 4"]
+    assert rf.System.from_dict(system.to_dict()) == system
+    outlines = geometry_of(system.assembly).walls
+    assert [tuple(outline.min(axis=0)) for outline in outlines] == [
+        (-1.5, 1.0), (-3.0, 0.0), (0.5, 1.0)
+    ]  # fmt: skip
+    rf.plot.scene(system)
+    runs = rf.sweep(system, PULSE, axes={"wall_2.gap": (["1", "9"], "mm"), "stop.gap": ["2 mm"]})
+    parts = rf.case(runs, **{"wall_2.gap": "9 mm", "stop.gap": "2 mm"}).system.parts
+    assert [str(wall.gap) for wall in parts.walls] == ["None", "0.002 meter", "0.009 meter"]
+    assert list(rf.model_ladder(rf.System(BLOCK, left, right)))[-1] == "rigid ground with walls"
+    for walls in ([rf.RearWall(), right], [rf.RearWall(), rf.RearWall(side="right")]):
+        with pytest.raises(AssemblyError, match=r"another RearWall are both given.*each wall a"):
+            rf.System(BLOCK, *walls)
+    with pytest.raises(AssemblyError, match="two links are called 'stop'"):
+        rf.System(BLOCK, left.replace(name="stop"), right.replace(name="stop"))
 
 
 @pytest.mark.parametrize(
@@ -141,7 +198,7 @@ def test_wall_of_a_stack_body_is_drawn_at_that_body():
     wall = rf.RearWall(side="right", stiffness="1 MN/m", gap="5 cm")
     for number, lowest in ((1, (0.65, 1.0)), (2, (1.05, 0.0))):
         scene = rf.System(stack, wall.replace(on_body=number))
-        assert geometry_of(scene.assembly).wall.min(axis=0) == pytest.approx(lowest)
+        assert geometry_of(scene.assembly).walls[0].min(axis=0) == pytest.approx(lowest)
 
 
 @pytest.mark.parametrize(

@@ -19,7 +19,7 @@ from rockframe.components import Component, RockingFrame, Stack
 from rockframe.components.registry import registered_classes
 from rockframe.errors import did_you_mean, short_repr
 from rockframe.suggestions import hints_of
-from rockframe.system.parts import RESTRAINER, default_class, slot_of_class, slots
+from rockframe.system.parts import SLOTS_OF_SEVERAL, default_class, slot_of_class, slots
 
 TYPE: Final = "type"
 CONSTRUCTOR: Final = "constructor"
@@ -54,7 +54,7 @@ def part_slots() -> tuple[str, ...]:
 
 def build_parts(file: TomlFile, slot: str, value: object) -> list[Component | None]:
     """Build the part that a table describes, or those of an array of tables."""
-    several = slot == RESTRAINER and isinstance(value, list)
+    several = slot in SLOTS_OF_SEVERAL and isinstance(value, list)
     return _build_each(file, (slot,), classes_in(slot), value, several=several)
 
 
@@ -193,15 +193,19 @@ _FROM_MEMBERS: Final = "from_members"
 def toml_tables(parts: Iterable[Component]) -> list[tuple[str, list[str]]]:
     """Return the tables of parts, each with its head and keys; together they are a file."""
     listed = [*parts]
-    several = sum(slot_of_class(type(part)) == RESTRAINER for part in listed) > 1
-    return [row for part in listed for row in _part_tables(part, several=several)]
+    slots_filled = [slot_of_class(type(part)) for part in listed]
+    return [
+        row
+        for part, slot in zip(listed, slots_filled, strict=True)
+        for row in _part_tables(part, several=slots_filled.count(slot) > 1)
+    ]
 
 
 def _part_tables(part: Component, *, several: bool) -> Iterator[tuple[str, list[str]]]:
     """Return the table of a part, and those of the parts of which it consists."""
     slot, inner = slot_of_class(type(part)) or type(part).__name__, inner_parts(type(part))
     values: dict[str, Any] = dict(part.to_dict())
-    head = f"[[{slot}]]" if several and slot == RESTRAINER else f"[{slot}]"
+    head = f"[[{slot}]]" if several else f"[{slot}]"
     plain = {name: value for name, value in values.items() if name not in inner}
     yield head, _key_lines(plain, slot)
     for name, form in inner.items():

@@ -29,11 +29,13 @@ from rockframe.dynamics.chain.link_rows import (
 )
 from rockframe.dynamics.chain.rows import BODY_STRIDE
 from rockframe.dynamics.links import Stretch
+from rockframe.dynamics.pads import ROUNDING
 
 COINCIDENCE: Final = 1e3
-"""Points of a link meet within this many times the rounding noise of its elongation."""
-TINY: Final = 1e-280
-"""Square of a speed below which it counts as zero [m^2 s^-2]."""
+"""Points of a link meet within this many times the rounding noise of its elongation, and part if
+their relative velocity exceeds as many times its own."""
+TINY: Final = 1e-140
+"""Speed below which it counts as zero [m s^-1]."""
 
 
 class DisplacedPoint(NamedTuple):
@@ -92,12 +94,22 @@ class LinkPoints(LinkRows):
         )
 
     @inlined
+    def speed_noise(self, k: int, point: DisplacedPoint) -> float:
+        """Return the rounding noise of the velocity of a point of a body, or of the ground."""
+        if k == GROUND:
+            return 0.0
+        rate = self.poses()[k * POSE_STRIDE + BODY_ROTATION_RATE]
+        about_centre = abs(rate) * (abs(point.arm_x) + abs(point.arm_y))
+        return ROUNDING * (abs(point.speed_x) + abs(point.speed_y) + about_centre)
+
+    @inlined
     def link_kinematics(
         self, row: Vector, first: DisplacedPoint, second: DisplacedPoint
     ) -> LinkMotion:
         """Return elongation, rate and direction of a link, :eq:`eq-link`, but no acceleration.
 
-        Where its points meet it acts along their relative velocity, in its upward sense.
+        Where its points meet it acts along their relative velocity, in its upward sense, and
+        upwards where they move together.
         """
         separation_x, separation_y = row[SEPARATION_X], row[SEPARATION_Y]
         initial_length = row[INITIAL_LENGTH]
@@ -124,9 +136,10 @@ class LinkPoints(LinkRows):
             up_x, up_y = self.up_direction(int(row[SECOND_BODY]))
             away = 1.0 if speed_x * up_x + speed_y * up_y >= 0.0 else -1.0
             x, y = away * speed_x, away * speed_y
-            square = x * x + y * y
-            length = math.sqrt(square)
-            if square < TINY:
+            length = math.sqrt(x * x + y * y)
+            noise = self.speed_noise(int(row[FIRST_BODY]), first)
+            noise += self.speed_noise(int(row[SECOND_BODY]), second)
+            if length <= max(COINCIDENCE * noise, TINY):
                 still = Stretch(elongation, 0.0, 0.0, initial_length, row[NOISE])
                 return LinkMotion(still, up_x, up_y)
         x, y = x / length, y / length
