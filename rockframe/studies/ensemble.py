@@ -93,6 +93,11 @@ def ensemble_statistics(
         msg = f"{_OWNER}: {values.name!r} has no numbers, but words or objects"
         raise ComponentError(msg)
     pooled_axes = checked_list(pooled, owner=_OWNER, name="pooled", of="names")
+    unknown = [name for name in pooled_axes if name not in {*values.dims, *values.coords}]
+    if unknown:
+        known = ", ".join(map(str, values.dims)) or "no dimension"
+        msg = f"{_OWNER}: pooled names {unknown[0]!r}; {values.name} goes over {known}"
+        raise ComponentError(msg)
     level = np.nan if _members_depend(values, runs.attrs, pooled_axes) else requested
     ordered = np.sort(values.to_numpy().ravel().astype(np.float64))
     ordered = ordered[~np.isnan(ordered)]

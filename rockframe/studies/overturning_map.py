@@ -149,9 +149,10 @@ def _unit_pulse(pulse: object, frequency: float) -> GroundMotion:
     if isinstance(pulse, GroundMotion):
         described = pulse.to_dict()
         if not {"amplitude", "frequency"} <= set(described) or "operations" in described:
+            needed = "an amplitude and a frequency, without operations such as scaled"
             msg = (
-                f"{_OWNER}: pulse needs an amplitude and a frequency, got {pulse.name!r}; give a "
-                "function of both that returns a GroundMotion"
+                f"{_OWNER}: pulse needs {needed}, got {pulse.name!r}; give a function of both that "
+                "returns a GroundMotion"
             )
             raise ComponentError(msg)
         sign = "-" if str(described["amplitude"]).startswith("-") else ""

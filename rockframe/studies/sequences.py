@@ -61,7 +61,8 @@ def earthquake_sequences(
     -------
     xarray.Dataset
         Over ``sequence`` and ``earthquake``: the scalars of the run from the start of the sequence
-        to the end of the pause after that earthquake, NaN beyond the last earthquake. Over
+        to the end of the pause after that earthquake, NaN beyond the last earthquake; of bodies
+        that may slide also the slip of each, ``peak_body_slip``. Over
         ``sequence``: ``overturning_earthquake``, the number of the earthquake that overturned the
         block, 0 if none did, NaN if a run without a verdict leaves it unknown, and ``pause`` [s].
 
@@ -223,17 +224,21 @@ def _unstack_sequences(runs: xr.Dataset, exists: AnyArray) -> xr.Dataset:
     """Return the runs with dimensions of sequence and earthquake instead of motion."""
     variables: dict[str, xr.Variable] = {}
     gaps = not exists.all()
-    for name, variable in runs.data_vars.items():
-        if variable.dims != (MOTION,):
+    for name, array in runs.data_vars.items():
+        if MOTION not in array.dims:
             continue
-        values = np.full(exists.shape, np.nan) if gaps else np.empty(exists.shape, variable.dtype)
+        variable = array.variable.transpose(MOTION, ...)
+        shape = (*exists.shape, *variable.shape[1:])
+        values = np.full(shape, np.nan) if gaps else np.empty(shape, variable.dtype)
         values[exists] = variable.to_numpy()
         attributes = dict(variable.attrs)
         if gaps and "flag_values" in attributes:
             attributes["flag_values"] = attributes["flag_values"].astype(np.float64)
-        variables[str(name)] = xr.Variable(("sequence", EARTHQUAKE), values, attributes)
+        dims = ("sequence", EARTHQUAKE, *variable.dims[1:])
+        variables[str(name)] = xr.Variable(dims, values, attributes)
     words = np.full(exists.shape, NONE, dtype=object)
     words[exists] = runs[MESSAGE].to_numpy()
     texts = xr.Variable(("sequence", EARTHQUAKE), words, runs[MESSAGE].attrs)
     attributes = {name: value for name, value in runs.attrs.items() if name != CASE_COUNT}
-    return xr.Dataset(variables, coords={MESSAGE: texts}, attrs=attributes)
+    others = {name: of for name, of in runs.coords.items() if MOTION not in of.dims}
+    return xr.Dataset(variables, coords={**others, MESSAGE: texts}, attrs=attributes)

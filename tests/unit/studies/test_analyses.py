@@ -264,6 +264,8 @@ def test_ensemble_statistics_have_units_of_their_variable(tmp_path):
     assert found.member_count.item() == 8
     with pytest.raises(SchemaError, match="expected one of"):
         rf.ensemble_statistics(runs, "height_of_fall")
+    with pytest.raises(ComponentError, match="pooled names 'scael'; peak_rotation goes over"):
+        rf.ensemble_statistics(runs, "peak_rotation", pooled=["scale", "scael"])
     with pytest.raises(ComponentError, match="no values"):
         rf.ensemble_statistics(xr.DataArray([np.nan], dims="motion", name="x"))
 

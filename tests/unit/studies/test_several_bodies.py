@@ -170,3 +170,17 @@ def test_missing_variables_raise_with_a_remedy():
     ):
         with pytest.raises(kind, match=match):
             rf.fragility(runs, limits=[wrong])
+
+
+def test_sequences_have_the_slip_of_each_body():
+    drums, ends = column(2), {"pause": "1 s", "progress": False}
+    sequences = {"both": [PULSE, PULSE.scaled(1.6)], "one": [PULSE.scaled(1.6)]}
+    slips = rf.earthquake_sequences(drums, sequences, **ends).peak_body_slip
+    assert slips.dims == ("sequence", "earthquake", "body")
+    for name, motion in (("both", PULSE), ("one", PULSE.scaled(1.6))):
+        single = drums.simulate(motion, free_vibration="1 s").peak_body_slip
+        assert float(single.max()) > 0.0
+        np.testing.assert_allclose(slips.sel(sequence=name, earthquake=1), single, rtol=1e-6)
+    both = slips.sel(sequence="both")
+    assert (both.sel(earthquake=2) >= both.sel(earthquake=1)).all()
+    assert np.isnan(slips.sel(sequence="one", earthquake=2)).all()
