@@ -37,6 +37,7 @@ _WORDS: Final = re.compile(r"[^\W_]+")
 _ACCELERATION_WORD: Final = re.compile(
     r"acc(?:n|el|eleration)?s?|ground|comp(?:onent)?", re.IGNORECASE
 )
+_ACCELERATION_ALONG: Final = re.compile(r"a(?:cc)?([xyz])", re.IGNORECASE)
 _COMPONENT_NUMBER: Final = re.compile(r"(?:^|[\W_]+)[1-9]$")
 
 
@@ -260,7 +261,8 @@ def _is_other(name: str) -> bool:
 def _direction(name: str) -> Orientation:
     # "Horizontal 2" is the second, not at two degrees
     plain = _COMPONENT_NUMBER.sub("", _BRACKETED.sub("", name).strip())
-    orientation = orientation_of(plain)
+    along = _ACCELERATION_ALONG.fullmatch(plain)
+    orientation = orientation_of(plain if along is None else along[1])
     if orientation != UNKNOWN:
         return orientation
     words = _WORDS.findall(plain)

@@ -218,6 +218,8 @@ class TestColumns:
             "z accel (m/s2)",
             "acceleration up component (m/s2)",
             "up 1 (m/s2)",
+            "az (m/s2)",
+            "AccZ (m/s2)",
         ],
     )
     def test_direction_before_the_word_acceleration_is_recognised(self, write, name):
