@@ -136,7 +136,6 @@ def _stack(slot: str, parts: Parts, options: Options) -> StackSetting:
     return stack_setting(blocks, offsets, bases, options, parts.links)
 
 
-_LINKS: Final = "links: Restrainer, Tendon, Load, elastic RearWall (one or several)"
 _BLOCK_ON_CAP = frozenset({"block", "pads", "cap", "soil"})
 
 _BUILTIN_SCENES: Final = (
@@ -176,16 +175,13 @@ _BUILTIN_SCENES: Final = (
     Scene("Stack + WinklerSoil", frozenset({"stack", "soil"}), partial(_stack, "soil")),
     *(
         Scene(
-            f"{upper} + {lower}{_LINKS}",
+            "Block or Stack (on rigid ground, TwoSpringSupport or WinklerSoil) + Restrainer, "
+            "Tendon, Load, elastic RearWall (one or several)",
             frozenset({slot, under, RESTRAINER}) - {"ground"},
             partial(_stack, under),
         )
-        for upper, slot in (("Block", "block"), ("Stack", "stack"))
-        for lower, under in (
-            ("", "ground"),
-            ("TwoSpringSupport + ", "pads"),
-            ("WinklerSoil + ", "soil"),
-        )
+        for slot in ("block", "stack")
+        for under in ("ground", "pads", "soil")
     ),
 )
 
@@ -319,7 +315,7 @@ def assemble_parts(
         names = " and ".join(type(part).__name__ for part in parts.structural())
         faults.append(f"no scene is made of {names} together")
     # the list of scenes helps where the parts make none, not where an option is wrong
-    supported = [scene.title for scene in scenes()] if faults else []
+    supported = list(dict.fromkeys(scene.title for scene in scenes())) if faults else []
     faults += [*size_faults(parts, options), *option_faults]
     if faults or scene is None:
         raise AssemblyError(faults, supported)
