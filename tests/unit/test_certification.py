@@ -485,7 +485,8 @@ def test_course_weighs_events_by_their_distance_from_six_instants():
         "angular_velocity_before": np.array([-2.0, 3.0, -0.5]),
         "event_kind": np.array([EventKind.IMPACT] * 3),
     }
-    summary = run_summary(trajectory, events, 0.3, 10.0, in_motion=False)
+    still = {"in_motion": False, "slides": 0.0, "slip": 0.0}
+    summary = run_summary(trajectory, events, 0.3, 10.0, **still)
     first, third = 2.0 / math.sqrt(2.0), 3.0 / math.sqrt(2.0)
     course = (first, math.hypot(first, third), third, 0.0, 0.0, 0.5)
     assert summary.course == pytest.approx(course, abs=1e-6)
@@ -493,11 +494,11 @@ def test_course_weighs_events_by_their_distance_from_six_instants():
     assert summary.step == trajectory.end_time / trajectory.step_count
     # one that comes back from beyond the angle, and one that overturns
     back = replace(trajectory, overturning_time=2.0, peak_right=math.pi / 8.0, peak_left=0.1)
-    summary = run_summary(back, events, 1.25, 10.0, in_motion=False)
+    summary = run_summary(back, events, 1.25, 10.0, **still)
     assert summary.clearances == pytest.approx((0.25, 0.75))
     falls = replace(back, status=Status.OVERTURNED, overturning_time=7.0)
     events["event_kind"][1] = EventKind.OVERTURNING
-    summary = run_summary(falls, events, 1.0, 10.0, in_motion=False)
+    summary = run_summary(falls, events, 1.0, 10.0, **still)
     assert summary.clearances == pytest.approx((9.0, 3.0))
 
 
