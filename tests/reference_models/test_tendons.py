@@ -100,3 +100,51 @@ def test_bodies_that_a_tendon_presses_together_rock_as_one(at, accuracy):
     same = parts.sel(time=slice(None, until))
     np.testing.assert_allclose(same.body_rotation[1], rotation, rtol=0.0, atol=1e-8)
     np.testing.assert_array_equal(same.body_rotation_on_base[0], 0.0)
+
+
+def draw_stack(number):
+    """Return a random stack with a tendon through some of its bodies, and a motion."""
+    rng = np.random.default_rng([7, number])
+    height = rng.uniform(1.0, 10.0)
+    wide = height / rng.uniform(2.0, 8.0)
+    shares, weight = rng.dirichlet(np.full(int(rng.choice([2, 2, 3])), 4.0)), 2e3 * GRAVITY
+    bodies, links, width = [], [], wide
+    for share in shares:  # from the ground up
+        bodies.insert(0, rf.Block(
+            width=f"{width} m", height=f"{max(share * height, 0.75 * width)} m",
+            mass=f"{2e3 * share} kg",
+        ))  # fmt: skip
+        width *= rng.uniform(0.6, 1.0)
+    for place, body in enumerate(bodies, 1):
+        if rng.random() < 0.3 and place < len(bodies):
+            continue
+        preload = weight * rng.choice([0.0, 10.0 ** rng.uniform(-4.0, 0.5)])
+        options = {"preload": f"{preload} N"} if preload else {}
+        if rng.random() < 0.3:
+            options["strength"] = f"{preload + weight * 10.0 ** rng.uniform(-3.0, 0.0)} N"
+            options["brittle"] = bool(rng.random() < 0.5)
+        links.append(rf.Tendon(
+            stiffness=f"{weight / wide * 10.0 ** rng.uniform(-3.0, 2.0)} N/m", on_body=place,
+            at=f"{rng.choice([0.0, rng.uniform(-0.4, 0.4)]) * body.si.width} m", **options,
+        ))  # fmt: skip
+    joints = [rf.RigidGround()] * (len(bodies) - 1)
+    noise = np.convolve(rng.normal(size=80), np.hanning(rng.integers(5, 25)), "same")
+    noise *= GRAVITY * wide / height * rng.uniform(0.8, 4.0) / np.abs(noise).max()
+    motion = rf.GroundMotion.from_arrays((noise, "m/s^2"), time_step="0.04 s")
+    return rf.System(rf.Stack(*bodies, interfaces=joints), rf.RigidGround(), *links), motion
+
+
+@pytest.mark.long
+@pytest.mark.filterwarnings("ignore::rockframe.errors.ModelWarning")
+@pytest.mark.parametrize("number", range(60))
+def test_random_stacks_with_tendons_end_alike_at_both_accuracies(number):
+    system, motion = draw_stack(number)
+    runs = [
+        system.simulate(motion, accuracy=accuracy, outputs=("energy",))
+        for accuracy in ("standard", "reference")
+    ]
+    assert int(runs[0].status) == int(runs[1].status) <= 2
+    assert float(runs[0].energy_residual) < 1e-5
+    assert float(runs[1].energy_residual) < 1e-8
+    if int(runs[0].status) == 0:
+        assert float(runs[0].peak_rotation) == pytest.approx(float(runs[1].peak_rotation), rel=1e-3)
