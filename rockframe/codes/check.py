@@ -6,6 +6,7 @@ from typing import Any, NamedTuple, cast
 from rockframe.errors import ComponentError, short_repr
 from rockframe.measures.common import check_not_empty
 from rockframe.motion import GroundMotion
+from rockframe.motion.pair import motion_hint
 from rockframe.simulation.system import System
 from rockframe.system.rigid_ground import RigidGroundSetting
 from rockframe.system.stack import RestrainedSetting
@@ -50,14 +51,16 @@ def read_motions(value: object, owner: str) -> dict[str, GroundMotion]:
     several = {value.name: value} if isinstance(value, GroundMotion) else value
     if not isinstance(several, Mapping):
         msg = (
-            f"{owner}: expected a GroundMotion or several by their labels, got {short_repr(value)}"
+            f"{owner}: expected a GroundMotion or several by their labels, got "
+            f"{short_repr(value)}{motion_hint(value)}"
         )
         raise ComponentError(msg)
     motions = cast("Mapping[str, GroundMotion]", several)
     check_not_empty(motions, owner=owner)
     for label, motion in motions.items():
         if not isinstance(cast("Any", motion), GroundMotion):
-            msg = f"{owner}: {label!r} needs a GroundMotion, got {short_repr(motion)}"
+            found = f"{short_repr(motion)}{motion_hint(motion)}"
+            msg = f"{owner}: {label!r} needs a GroundMotion, got {found}"
             raise ComponentError(msg)
     return {str(label): motion for label, motion in motions.items()}
 

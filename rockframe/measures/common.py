@@ -13,6 +13,7 @@ from rockframe.arguments import checked_choice
 from rockframe.compiled import COMPILED
 from rockframe.errors import ComponentError, short_repr
 from rockframe.motion import GroundMotion
+from rockframe.motion.pair import motion_hint
 from rockframe.motion.value import GroundComponent
 from rockframe.results.joining import MOTION
 from rockframe.results.schema import SCHEMA, build_dataset, without_fill_values
@@ -23,7 +24,7 @@ from rockframe.signals.arrays import Array
 def signal_of(motion: object, component: object, *, owner: str) -> Signal:
     """Take one component of a motion."""
     if not isinstance(motion, GroundMotion):
-        msg = f"{owner}: motion needs a GroundMotion, got {short_repr(motion)}"
+        msg = f"{owner}: motion needs a GroundMotion, got {short_repr(motion)}{motion_hint(motion)}"
         raise ComponentError(msg)
     which = checked_choice(GroundComponent, component, owner=owner, name="component")
     if which is GroundComponent.HORIZONTAL:

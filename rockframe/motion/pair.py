@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, replace
+from os import PathLike
 from typing import Any, Final
 
 import numpy as np
@@ -326,3 +327,14 @@ def _check_same_step_and_start(
     if not same_start(starts[0], starts[1], steps[0]):
         msg = f"{owner}: first starts at {starts[0]}, {name} at {starts[1]}; expected one start"
         raise ComponentError(msg)
+
+
+def motion_hint(value: object) -> str:
+    """Say how to make one motion of what was given in its place, if that is known."""
+    if isinstance(value, str | PathLike):
+        return f"; read the file first: GroundMotion.read({str(value)!r})"
+    if hasattr(value, "shape") or isinstance(value, list):
+        return "; build one: GroundMotion.from_arrays((samples, 'm/s^2'), '0.01 s')"
+    if isinstance(value, HorizontalPair):
+        return "; give its component in one direction: pair.first, or pair.rotated('30 deg')"
+    return ""

@@ -8,7 +8,6 @@ import json
 import math
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, replace
-from os import PathLike
 from typing import Any, Final, Literal, TypeAlias, Unpack, cast
 
 import numpy as np
@@ -18,7 +17,8 @@ from rockframe.arguments import is_iterable
 from rockframe.components import InitialState
 from rockframe.dynamics.protocol import Ending, Start
 from rockframe.errors import AssemblyError, ComponentError, RockframeError, did_you_mean, short_repr
-from rockframe.motion import GroundMotion, HorizontalPair
+from rockframe.motion import GroundMotion
+from rockframe.motion.pair import motion_hint
 from rockframe.results.diagnostics import DIAGNOSTICS, Diagnostic
 from rockframe.results.forces import SOIL_FRICTION_COLUMNS, has_friction_limit
 from rockframe.results.outcome import verdict_of
@@ -346,7 +346,7 @@ def plan_run(
     faults: list[str] = []
     motion = system.parts.motion if motion is None else motion
     if not isinstance(motion, GroundMotion | None):  # pyright: ignore[reportUnnecessaryIsInstance]
-        fault = f"motion must be a GroundMotion, got {short_repr(motion)}{_motion_hint(motion)}"
+        fault = f"motion must be a GroundMotion, got {short_repr(motion)}{motion_hint(motion)}"
         raise AssemblyError([fault])
     arguments = read_arguments(faults, **requested)
     plan = resolve_plan(arguments, system, motion, faults)
@@ -424,17 +424,6 @@ def _read_initial(value: object, faults: list[str]) -> "InitialState | xr.Datase
         f"initial must be an InitialState or the result of a run, got {short_repr(value)}{hint}"
     )
     return _REST
-
-
-def _motion_hint(value: object) -> str:
-    """Say how to make a motion from what was given, if that is known."""
-    if isinstance(value, str | PathLike):
-        return f"; read the file first: GroundMotion.read({str(value)!r})"
-    if hasattr(value, "shape") or isinstance(value, list):
-        return "; build one: GroundMotion.from_arrays((samples, 'm/s^2'), '0.01 s')"
-    if isinstance(value, HorizontalPair):
-        return "; give its component in one direction: pair.first, or pair.rotated('30 deg')"
-    return ""
 
 
 def _initial_condition(

@@ -13,6 +13,7 @@ import xarray as xr
 from rockframe.arguments import checked_list, is_iterable, with_string_keys
 from rockframe.errors import ComponentError, short_repr
 from rockframe.motion import GroundMotion
+from rockframe.motion.pair import motion_hint
 from rockframe.results.joining import CASE_COUNT
 from rockframe.results.outcome import overturns
 from rockframe.results.schema import with_variables
@@ -149,8 +150,9 @@ def _read_sequences(value: object) -> dict[str, list[GroundMotion]]:
         given = [sequence] if isinstance(sequence, GroundMotion) else sequence
         motions = checked_list(given, owner=_OWNER, name=repr(name), of="GroundMotions")
         if not motions or not all(isinstance(motion, GroundMotion) for motion in motions):
-            needed = f"{name!r} needs GroundMotions in their order"
-            msg = f"{_OWNER}: {needed}, got {short_repr(sequence)}"
+            wrong = [motion for motion in motions if not isinstance(motion, GroundMotion)]
+            found = f"{short_repr(sequence)}{motion_hint(wrong[0]) if wrong else ''}"
+            msg = f"{_OWNER}: {name!r} needs GroundMotions in their order, got {found}"
             raise ComponentError(msg)
         sequences[name] = motions
     return {name: _with_common_step(motions) for name, motions in sequences.items()}

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 import rockframe as rf
-from rockframe.errors import AssemblyError
+from rockframe.errors import AssemblyError, RockframeError
 
 NORTH = rf.GroundMotion.stochastic(6.0, "10 km", seed=1).window("9 s", "15 s")
 EAST = rf.GroundMotion.stochastic(6.0, "10 km", seed=2).window("9 s", "15 s")
@@ -47,3 +47,18 @@ def test_vertical_component_accompanies_both_directions():
 def test_simulate_refuses_a_pair():
     with pytest.raises(AssemblyError, match=r"pair\.rotated\('30 deg'\)"):
         SYSTEM.simulate(PAIR)
+
+
+def test_a_pair_where_one_motion_is_needed_is_refused_with_advice():
+    north = rf.GroundMotion.sine_pulse("1 m/s^2", "1 Hz")
+    pair = rf.HorizontalPair(north, north)
+    system = rf.System(rf.Block(width="0.5 m", height="2 m", mass="400 kg"))
+    for call in (
+        lambda: system.simulate(pair),
+        lambda: rf.earthquake_sequences(system, [[north, pair]]),
+        lambda: rf.codes.circolare_2019(system, pair),
+        lambda: rf.codes.circolare_2019(system, {"both": pair}),
+        lambda: rf.intensity_measures(pair),
+    ):
+        with pytest.raises(RockframeError, match=r"in one direction: pair.first, or pair.rotated"):
+            call()
