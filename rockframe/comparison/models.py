@@ -44,9 +44,8 @@ _LINK_WORDS: Final[dict[type, str]] = {
     Restrainer: "restrainers",
     Tendon: "tendons",
     Load: "loads",
-    RearWall: "wall",
 }
-"""Words for links; links of a user's own are named by their classes."""
+"""Words for links but walls; links of a user's own are named by their classes."""
 
 
 @with_hints()
@@ -108,11 +107,10 @@ def model_ladder(system: System) -> dict[str, System]:
     models: dict[str, System] = {}
     last = ""
     links = () if system.parts.own else system.parts.links
+    words_of = {**_LINK_WORDS, RearWall: "wall" if len(system.parts.walls) == 1 else "walls"}
     link_words = " and ".join(
-        dict.fromkeys(_LINK_WORDS.get(type(link), type(link).__name__) for link in links)
+        dict.fromkeys(words_of.get(type(link), type(link).__name__) for link in links)
     )
-    if len(system.parts.walls) > 1:
-        link_words = link_words.replace(_LINK_WORDS[RearWall], "walls")
     with warnings.catch_warnings():
         # a simpler model may warn of effects that it leaves out; the scene has warned before
         warnings.simplefilter("ignore", ModelWarning)

@@ -9,6 +9,7 @@ from scipy.integrate import solve_ivp
 
 import rockframe as rf
 from rockframe.errors import AssemblyError, ComponentError
+from rockframe.reports.limits import model_limits
 from rockframe.system.geometry import geometry_of
 from rockframe.system.rear_wall import equivalent_wall
 
@@ -226,3 +227,20 @@ def test_elastic_wall_repr_omits_restitution():
     assert rf.RearWall.from_dict(wall.to_dict()) == wall
     assert rf.RearWall.from_dict({**wall.to_dict(), "restitution": "sorrentino"}) == wall
     assert "restitution='newton'" in repr(rf.RearWall(restitution="newton", wall_restitution=0.2))
+
+
+def test_only_a_rigid_wall_has_the_limits_of_instantaneous_impacts():
+    elastic = rf.RearWall(stiffness="2 MN/m", gap="5 mm")
+    for wall, has_limit in ((rf.RearWall(), True), (elastic, False)):
+        limits = model_limits(rf.System(BLOCK, wall).parts)
+        assert ("Walls" in [limit.title for limit in limits]) is has_limit
+
+
+def test_free_decay_before_an_elastic_wall_is_fitted():
+    """A rigid wall leaves one side of the swings; an elastic one, out of reach, leaves both."""
+    wall = rf.RearWall(stiffness="2 MN/m", gap="1 m")
+    start = rf.InitialState(rotation="0.1 rad")
+    run = rf.System(BLOCK, PADS, wall).simulate(initial=start, duration="3 s", output_step="5 ms")
+    other = rf.System(BLOCK, PADS.replace(damping_ratio=0.15), wall)
+    fit = rf.fit_free_decay(other, measured=run.rotation, parameters="damping_ratio")
+    assert fit.fitted_value.item() == pytest.approx(PADS.si.damping_ratio, rel=1e-3)

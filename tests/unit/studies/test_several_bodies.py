@@ -177,6 +177,7 @@ def test_sequences_have_the_slip_of_each_body():
     sequences = {"both": [PULSE, PULSE.scaled(1.6)], "one": [PULSE.scaled(1.6)]}
     slips = rf.earthquake_sequences(drums, sequences, **ends).peak_body_slip
     assert slips.dims == ("sequence", "earthquake", "body")
+    assert slips.body.values.tolist() == [1, 2]
     for name, motion in (("both", PULSE), ("one", PULSE.scaled(1.6))):
         single = drums.simulate(motion, free_vibration="1 s").peak_body_slip
         assert float(single.max()) > 0.0
