@@ -242,10 +242,23 @@ def first_along(dataset: str, dim: str) -> str:
     return f"{dataset}.isel({dim}=0)" if dim.isidentifier() else f"{dataset}.isel({{{dim!r}: 0}})"
 
 
+OWNERS_BY_ARGUMENT: Final = {
+    option: {"System": None}
+    for option in ("restraint", "rotation", "coupling", "gravity", "inclination", "sliding")
+}
+"""Names of classes and of methods by each argument that they take. Classes add theirs; a system's
+options stand here, as its class may not be loaded yet."""
+
+
 def unexpected_argument(call: str, name: str, known: Iterable[str]) -> ArgumentError:
-    """Return Python's error of an unexpected argument, and propose a similar one."""
-    names = list(known)
-    words = f"{call} got an unexpected keyword argument {name!r}{did_you_mean(name, names) or '.'}"
+    """Return Python's error of an unexpected argument, with who takes it, or a similar one."""
+    names, owners = list(known), OWNERS_BY_ARGUMENT.get(name, {})
+    kind, is_of_class, _ = call.partition(".")
+    siblings = [owner for owner in owners if is_of_class and owner.startswith(f"{kind}.")]
+    classes = [owner for owner in owners if is_of_class and "." not in owner]
+    others = ", ".join(siblings or classes)
+    hint = f", which {others} can take." if others else did_you_mean(name, names) or "."
+    words = f"{call} got an unexpected keyword argument {name!r}{hint}"
     return ArgumentError(f"{words} It takes {', '.join(names) or 'none'}")
 
 

@@ -22,6 +22,7 @@ from typing import (
 )
 
 from rockframe.errors import (
+    OWNERS_BY_ARGUMENT,
     AccessError,
     ArgumentError,
     named_by_own_part,
@@ -103,19 +104,19 @@ def suggests_names(kind: Class) -> Class:
     for name, member in list(vars(kind).items()):
         if name.startswith("_") and name != "__init__":
             continue
-        if isinstance(member, classmethod | staticmethod):
-            function: Any = cast("Any", member).__func__
-            if _is_unhinted_function(function):
-                setattr(kind, name, type(member)(with_hints()(function)))
-        elif _is_unhinted_function(member):
-            setattr(kind, name, with_hints()(member))
+        bound = isinstance(member, classmethod | staticmethod)
+        function: Any = cast("Any", member).__func__ if bound else member
+        if not isinstance(function, FunctionType):
+            continue
+        if name != "__init__":
+            for argument in (name.removeprefix("from_"), *list(signature(function).parameters)[1:]):
+                OWNERS_BY_ARGUMENT.setdefault(argument, {})[f"{kind.__name__}.{name}"] = None
+        if hints_of(function) is None:
+            checked = with_hints()(function)
+            setattr(kind, name, type(member)(checked) if bound else checked)
     if not any("__getattr__" in vars(base) for base in kind.__mro__):
         kind.__getattr__ = _raise_no_attribute
     return kind
-
-
-def _is_unhinted_function(value: object) -> bool:
-    return isinstance(value, FunctionType) and hints_of(value) is None
 
 
 def _raise_no_attribute(self: object, name: str) -> NoReturn:

@@ -21,6 +21,7 @@ from rockframe.components.parameters import (
     checked_si,
 )
 from rockframe.errors import (
+    OWNERS_BY_ARGUMENT,
     ArgumentError,
     ComponentError,
     ModelWarning,
@@ -96,7 +97,6 @@ class Component(Immutable, Generic[Numbers]):
 
     noun: ClassVar[str] = "component"
     alternatives: ClassVar[tuple[OneOf, ...]] = ()
-    _hints: ClassVar[Mapping[str, str]] = {}  # on arguments that it does not take
     _declared: ClassVar[Mapping[str, Declared[Any, Any, Any]]] = {}
 
     def __init_subclass__(cls, **options: Any) -> None:
@@ -151,9 +151,6 @@ class Component(Immutable, Generic[Numbers]):
         declared = cls.declared()
         call = f"{cls.__qualname__}.__init__()"
         for name in values:
-            if name in cls._hints:
-                msg = f"{call} takes no {name!r}: {cls._hints[name]}"
-                raise ArgumentError(msg)
             if name not in declared:
                 raise unexpected_argument(call, name, declared)
         missing = [
@@ -458,6 +455,8 @@ def _register(kind: type[Component]) -> None:
         )
         raise ComponentError(msg)
     COMPONENT_CLASSES[kind.__name__] = kind
+    for name in kind.declared():
+        OWNERS_BY_ARGUMENT.setdefault(name, {})[kind.__name__] = None
 
 
 def _constructor(kind: type[Component]) -> Any:

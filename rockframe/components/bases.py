@@ -1,9 +1,8 @@
 """Bases under bodies: rigid ground, pads, soil, and a cap between building and soil."""
 
-from collections.abc import Mapping
 from dataclasses import dataclass
 from enum import StrEnum
-from typing import ClassVar, Final, Literal, Self, TypeAlias
+from typing import ClassVar, Literal, Self, TypeAlias
 
 from rockframe.case_arrays import hypot
 from rockframe.components.alternatives import OneOf
@@ -266,12 +265,6 @@ class Separation(StrEnum):
 SeparationLike: TypeAlias = Separation | Literal["displacement", "pressure"]
 
 
-_SUBGRADE_HINT: Final = (
-    "WinklerSoil.from_subgrade_modulus('20 MN/m^3', depth='4 m', ...) takes it, with the depth of "
-    "the base"
-)
-
-
 class WinklerSoil(Component):
     """A Winkler bed: independent springs and dashpots that take no tension.
 
@@ -297,9 +290,6 @@ class WinklerSoil(Component):
 
     noun: ClassVar[str] = "soil"
     alternatives: ClassVar[tuple[OneOf, ...]] = (OneOf("damping", "damping_ratio"),)
-    _hints: ClassVar[Mapping[str, str]] = {
-        "subgrade_modulus": _SUBGRADE_HINT, "modulus": _SUBGRADE_HINT
-    }  # fmt: skip
 
     stiffness: Parameter = Parameter(
         BED_STIFFNESS,

@@ -15,7 +15,14 @@ import pytest
 
 import rockframe as rf
 from rockframe.compiled import COMPILED
-from rockframe.errors import AssemblyError, ModelWarning, RecordError, SchemaError, UnitsError
+from rockframe.errors import (
+    OWNERS_BY_ARGUMENT,
+    AssemblyError,
+    ModelWarning,
+    RecordError,
+    SchemaError,
+    UnitsError,
+)
 
 pytestmark = pytest.mark.unit
 
@@ -113,7 +120,32 @@ MISTAKES = {
     "a subgrade modulus by its name": (
         lambda: rf.WinklerSoil(subgrade_modulus="20 MN/m^3", damping_ratio=0.2),
         TypeError,
-        ["WinklerSoil.from_subgrade_modulus("],
+        ["which WinklerSoil.from_subgrade_modulus can take"],
+    ),
+    "an option of a system as an argument of a part": (
+        lambda: rf.RigidGround(inclination="3 deg"),
+        TypeError,
+        ["'inclination', which System can take"],
+    ),
+    "an argument of another constructor of the class": (
+        lambda: rf.Block(radius="2 m", slenderness=4, mass="1 t"),
+        TypeError,
+        ["'radius', which Block.from_size can take. It takes width"],
+    ),
+    "an argument of a run as one of a system": (
+        lambda: rf.System(rf.Block(width="1 m", height="4 m", mass="1 t"), accuracy="fast"),
+        TypeError,
+        ["'accuracy', which System.simulate can take"],
+    ),
+    "an argument of bases as one of a block": (
+        lambda: rf.Block(width="1 m", height="4 m", mass="1 t", friction=0.3),
+        TypeError,
+        ["'friction', which RigidGround, TwoSpringSupport, WinklerSoil"],
+    ),
+    "an argument of bases as one of a run": (
+        lambda: system().simulate(PULSE, friction=0.3),
+        TypeError,
+        ["'friction', which RigidGround, TwoSpringSupport, WinklerSoil"],
     ),
     "an argument that nothing has": (
         lambda: system().simulate(PULSE, colour="red"),
@@ -121,6 +153,12 @@ MISTAKES = {
         ["unexpected keyword argument 'colour'"],
     ),
 }
+
+
+def test_each_option_of_a_system_is_known_as_one():
+    of_systems = {name for name, owners in OWNERS_BY_ARGUMENT.items() if "System" in owners}
+    parameters = signature(rf.System).parameters.values()
+    assert of_systems == {one.name for one in parameters if one.kind is one.KEYWORD_ONLY}
 
 
 @pytest.mark.parametrize("mistake", MISTAKES)

@@ -211,7 +211,7 @@ VALUES = {
     "block(mass='5500')": "no unit",
     "rf.Block('1 m', '4 m', '5 t')": "takes 1 positional argument but 4 were given. It takes width",
     "rf.Block(width='1 m', height='4 m')": "missing 1 required keyword-only argument: 'mass'",
-    "block(density='2 t/m^3')": "'density'. It takes width",
+    "block(density='2 t/m^3')": "'density', which Block.from_density",
     "block(shape_factor=0.3, inertia='10 t*m^2')": "give shape_factor or inertia, not both",
     "block(shape_factor='0.3 m')": "shape_factor needs a pure ratio, got '0.3 m'",
     "block(shape_factor=[0.3])": "[0.3]",
