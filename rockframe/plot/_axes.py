@@ -84,7 +84,8 @@ def add_legend(axes: "Axes", entries: tuple[Any, Any] | None = None, **style: An
         axes.set_ylim(low, low * (1.05 * high / low) ** (1.0 / (1.0 - legend_share)))
     axes.legend(
         handles, words, loc="upper right", ncols=columns, fontsize="small",
-        frameon=True, edgecolor="none", borderaxespad=0.2, handlelength=1.8, columnspacing=1.2, **style,
+        frameon=True, edgecolor="none", borderaxespad=0.2, handlelength=1.8, columnspacing=1.2,
+        **style,
     )  # fmt: skip
 
 
