@@ -538,7 +538,7 @@ LINES = {
     "run scene.toml -o none/out.nc": "there is no folder 'none'",
     "run scene.toml extra.toml": "extra.toml",
     "run out.nc": "out.nc: this is no text",
-    "run study.toml": "unknown key 'axes'",
+    "run study.toml": "'axes' belongs to a study, which 'rockframe study' runs",
     "describe scene.tml": "scene.tml: there is no such file",
     "motion record.AT2 --picture x.jpg": "x.jpg: the name ends in '.jpg'",
     "motion scene.toml": "scene.toml",

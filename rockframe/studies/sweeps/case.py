@@ -189,8 +189,8 @@ def _indices_of_case(
     unknown = [name for name in labels if name not in (*dims, *fixed)]
     missing = [name for name in dims if name not in labels and dataset.sizes[name] > 1]
     faults = [
-        f"there is no axis {name!r}{did_you_mean(name, (*dims, *fixed))}; there are "
-        f"{', '.join(dims)}"
+        f"there is no axis {name!r}; there are {', '.join(dims)}"
+        f"{did_you_mean(name, (*dims, *fixed))}"
         for name in unknown
     ]
     faults += [f"give a value of {name!r}" for name in missing]
