@@ -222,7 +222,9 @@ _SYMBOLS: Final = {
     "pretension": ("preload",),
     "friction_coefficient": ("friction",),
     "run": ("simulate",),
-    "solve": ("simulate",),
+    "solve": ("simulate", "run"),
+    "simulate": ("run",),
+    "sweep": ("study",),
 }
 """Symbols and words of the literature for arguments, parameters and functions. The symbols b and h
 are left out: in papers they are half the width and half the height."""
