@@ -385,7 +385,7 @@ VALUES = {
     "rf.average_spectral_acceleration(RECORD)": "'periods'. It takes motion",
     # studies
     "rf.sweep()": "'scene'. It takes scene",
-    "rf.sweep(BLOCK, RECORD, scale=[1])": "scene must be a System",
+    "rf.sweep(BLOCK, RECORD, scale=[1])": "mass='5500.0 kg'); write rf.System(block, ...)",
     "sweep('x.AT2', scale=[1])": "motions must be a GroundMotion, or several, got 'x.AT2'",
     "sweep(width=[1, 2])": "width needs a length with a unit, got bare numbers",
     "sweep(width=([1], 's'))": "width needs a length in a unit such as m, got '1 s'",
@@ -450,7 +450,10 @@ VALUES = {
     "rf.tradeoff(SYSTEM, PULSE, repeats=0)": "repeats must be a whole number",
     "rf.recommend(run)": "expected one of tradeoff()",
     "rf.recommend(run, error=['x'])": "error must be 'peak_error'",
-    "rf.model_ladder(BLOCK)": "system needs a System, got Block",
+    "rf.model_ladder(BLOCK)": "system needs a System, got Block; write rf.System(block, ...)",
+    "rf.prove(BLOCK)": "mass='5500.0 kg'); write rf.System(block, ...)",
+    "rf.fragility({})": "found none and 'PGA'",
+    "rf.case({})": "runs must be the result of rf.sweep or the folder of its store, got {}",
     # results
     "rf.concat(run)": "expected a list of datasets",
     "rf.concat(['a.nc'])": "'a.nc'; expected a dataset",

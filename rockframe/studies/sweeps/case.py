@@ -127,6 +127,9 @@ def case(
     >>> float(alone.peak_rotation) == float(runs.peak_rotation.sel(scale=1.4).squeeze())
     True
     """
+    if not isinstance(runs, xr.Dataset | str | PathLike):
+        msg = f"{_OWNER}: runs must be the result of rf.sweep or the folder of its store, got "
+        raise SchemaError(msg + short_repr(runs))
     dataset = runs if isinstance(runs, xr.Dataset) else open_study(runs)
     attributes: Mapping[str, Any] = cast("Mapping[str, Any]", dataset.attrs)
     if not set(SWEEP_ATTRIBUTES) <= set(attributes):
