@@ -452,6 +452,9 @@ VALUES = {
     "rf.recommend(run, error=['x'])": "error must be 'peak_error'",
     "rf.model_ladder(BLOCK)": "system needs a System, got Block; write rf.System(block, ...)",
     "rf.prove(BLOCK)": "mass='5500.0 kg'); write rf.System(block, ...)",
+    "BLOCK.simulate(RECORD)": "write rf.System(block, ...).simulate(motion)",
+    "rf.simulate(SYSTEM, RECORD)": "write rf.System(block, ...).simulate(motion)",
+    "RECORD.plot()": "; the functions of rf.plot draw",
     "rf.fragility({})": "found none and 'PGA'",
     "rf.case({})": "runs must be the result of rf.sweep or the folder of its store, got {}",
     # results
