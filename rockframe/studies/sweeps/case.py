@@ -127,10 +127,7 @@ def case(
     >>> float(alone.peak_rotation) == float(runs.peak_rotation.sel(scale=1.4).squeeze())
     True
     """
-    if not isinstance(runs, xr.Dataset | str | PathLike):
-        msg = f"{_OWNER}: runs must be the result of rf.sweep or the folder of its store, got "
-        raise SchemaError(msg + short_repr(runs))
-    dataset = runs if isinstance(runs, xr.Dataset) else open_study(runs)
+    dataset = _read_runs(runs)
     attributes: Mapping[str, Any] = cast("Mapping[str, Any]", dataset.attrs)
     if not set(SWEEP_ATTRIBUTES) <= set(attributes):
         msg = (
@@ -168,6 +165,19 @@ def case(
     if REPEATED in dataset and _value_at(dataset[REPEATED], indices) == 1.0:
         options["accuracy"] = LEVELS[REPEATED_LEVEL]
     return SweepCase(system, motion, options)
+
+
+def _read_runs(runs: object) -> xr.Dataset:
+    """Read the argument ``runs``."""
+    if isinstance(runs, xr.Dataset):
+        return runs
+    if isinstance(runs, str | PathLike):
+        return open_study(runs)  # pyright: ignore[reportUnknownArgumentType]
+    msg = (
+        f"{_OWNER}: runs must be the result of rf.sweep or the folder of its store, got "
+        f"{short_repr(runs)}"
+    )
+    raise SchemaError(msg)
 
 
 def system_of_case(dataset: xr.Dataset, *, owner: str) -> System:
