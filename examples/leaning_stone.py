@@ -2,7 +2,7 @@
 
 Usage: python examples/leaning_stone.py [--folder results]
 
-A menhir, 0.9 m wide and 4.2 m high, on stiff soil; its top stands 0.35 m beside its foot. Prints
+A menhir, 0.9 m wide and 4.2 m high, on stiff soil; its top is 0.35 m off its foot. Prints
 the peak acceleration of a pulse to either side that it withstands; writes leaning_stone.csv.
 """
 

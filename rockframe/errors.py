@@ -222,10 +222,17 @@ _SYMBOLS: Final = {
     "pretension": ("preload",),
     "friction_coefficient": ("friction",),
     "run": ("simulate",),
-    "solve": ("simulate",),
+    "solve": ("simulate", "run"),
+    "simulate": ("run",),
+    "sweep": ("study",),
 }
 """Symbols and words of the literature for arguments, parameters and functions. The symbols b and h
 are left out: in papers they are half the width and half the height."""
+_ELSEWHERE: Final = {
+    "simulate": "; write rf.System(block, ...).simulate(motion)",
+    "plot": "; the functions of rf.plot draw",
+}
+"""Where functions are that are looked for as attributes of other objects."""
 
 
 def did_you_mean(value: object, known: Iterable[str]) -> str:
@@ -266,7 +273,8 @@ def unknown_attribute(owner: str, name: str, known: Iterable[str]) -> AccessErro
     """Return Python's error of a missing attribute, and propose a similar one."""
     words = f"{owner} has no attribute {name!r}"
     if not name.startswith("_"):  # programs look up those with an underscore
-        words += did_you_mean(name, (public for public in known if not public.startswith("_")))
+        near = did_you_mean(name, (public for public in known if not public.startswith("_")))
+        words += near or _ELSEWHERE.get(name, "")
     return AccessError(words, name=name)
 
 

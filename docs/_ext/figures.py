@@ -63,7 +63,7 @@ def conventions() -> Figure:
         axes.plot(*at, "o", color=INK, ms=4)
         axes.text(*(at + shifts[name]), name, color=INK)
     _line(axes, place(0.0, 0.0), place(0.0, h), "h", (-0.25, 0.0))
-    _line(axes, place(0.0, h), place(b, 0.0), "$R_0$", (0.1, 0.1))
+    _line(axes, place(0.0, h), place(b, 0.0), "$R_0$", (-0.33, -0.1))
     _line(axes, place(0.0, 0.0), place(-b, 0.0), "b", (0.0, 0.1))
     axes.plot([1.0, 1.0], [0.0, 2.0], color="0.6", lw=0.8)
     axes.plot(*np.array([right, place(b, 2.0)]).T, color="0.6", lw=0.8)

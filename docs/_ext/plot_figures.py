@@ -63,7 +63,7 @@ def diagrams() -> Figure:
 
 
 def suite_spectra() -> Figure:
-    """Draw the spectra of a set beside a target."""
+    """Draw the spectra of a set and a target."""
     suite = {f"seed {k}": rf.GroundMotion.stochastic(6.6, "5 km", seed=k) for k in range(8)}
     axes = rf.plot.suite(suite, target=rf.TargetSpectrum.eurocode_8("0.3 g_0"))
     return axes.get_figure(root=True)

@@ -12,7 +12,11 @@ from matplotlib.lines import Line2D
 DATA = Path(__file__).parents[1] / "data"
 INK = "#1f3a5f"
 COLOURS = {"RK45": "#cc6677", "DOP853": "#ddaa33", "LSODA": "#44aa99", "Radau": "#aa4499"}
-STYLES = {"begun anew at samples": ("-", "o"), "through the samples": (":", "^")}
+WAYS = {
+    "begun anew at samples": ("restarted at samples", "-", "o"),
+    "through the samples": ("through the samples", ":", "^"),
+}
+"""How SciPy takes the samples: the name in the data, that in the figure, line and marker."""
 TITLES = {
     "rigid ground": "rigid ground",
     "pads": "two pads",
@@ -58,14 +62,14 @@ def _ours(axes: Axes, points: list[dict]) -> None:
 
 
 def work_precision() -> Figure:
-    """Draw time against error in the five scenes, and beside OpenSees."""
+    """Draw time against error in the five scenes, and that of OpenSees."""
     data = _read("work_precision")
     figure = Figure(figsize=(9.0, 9.6), layout="constrained")
     grid = figure.subplots(3, 2)
     for axes, (name, title) in zip(grid.flat, TITLES.items(), strict=False):
         points = data["scenes"][name]["points"]
         for method, colour in COLOURS.items():
-            for way, (style, marker) in STYLES.items():
+            for way, (_, style, marker) in WAYS.items():
                 chosen = [
                     one for one in points if one.get("method") == method and one["way"] == way
                 ]
@@ -81,7 +85,7 @@ def work_precision() -> Figure:
             cheapest[step] = min(cheapest.get(step, one), one, key=lambda point: point["time"])
     _line(last, list(cheapest.values()), "0.35", "-", "D")
     _ours(last, points)
-    last.set_title("two pads without dashpots, beside OpenSees", fontsize="medium")
+    last.set_title("two pads without dashpots, and OpenSees", fontsize="medium")
     for axes in grid.flat:
         axes.set(xscale="log", yscale="log", xlim=(3.0, 1e-14), ylim=(1.5e-3, 300.0))
         axes.grid(visible=True, lw=0.4, color="0.88")
@@ -95,8 +99,8 @@ def work_precision() -> Figure:
     handles += [
         Line2D([], [], color="0.35", marker="D", ms=4, lw=1.2, label="OpenSees"),
         *(
-            Line2D([], [], color="0.5", ls=style, marker=marker, ms=4, label=f"SciPy {way}")
-            for way, (style, marker) in STYLES.items()
+            Line2D([], [], color="0.5", ls=style, marker=marker, ms=4, label=f"SciPy {words}")
+            for words, style, marker in WAYS.values()
         ),
     ]
     figure.legend(handles=handles, loc="outside lower center", ncols=4, frameon=False)
@@ -142,10 +146,10 @@ def cost_model() -> Figure:
                 [one["steps"] + one["rejected"] for one in chosen],
                 "o-", ms=4, lw=1.2, color=colour, label=level,
             )  # fmt: skip
-        asked = [one for one in rows if one["level"] == "fast"]
+        fast = [one for one in rows if one["level"] == "fast"]
         axes.loglog(
-            [one[variable] for one in asked], [one["stable_steps"] for one in asked],
-            "--", lw=1.4, color="0.5", label="asked by stability",
+            [one[variable] for one in fast], [one["stable_steps"] for one in fast],
+            "--", lw=1.4, color="0.5", label="required for stability",
         )  # fmt: skip
         axes.set(xlabel=words, ylabel="steps in 8 s")
     stiffness.set_title("hard pads", fontsize="medium")

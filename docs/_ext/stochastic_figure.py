@@ -16,7 +16,8 @@ def stochastic_motions() -> Figure:
     layout = figure.add_gridspec(3, 2)
     spectra = figure.add_subplot(layout[:, 0])
     target = np.geomspace(0.03, 50.0, 400)
-    for row, (magnitude, colour) in enumerate(COLOURS.items()):
+    histories = [figure.add_subplot(layout[row, 1]) for row in range(len(COLOURS))]
+    for history, (magnitude, colour) in zip(histories, COLOURS.items(), strict=True):
         motions = [rf.GroundMotion.stochastic(magnitude, "20 km", seed) for seed in SEEDS]
         drawn = [rf.fourier_spectrum(motion) for motion in motions]
         frequency = drawn[0].frequency.values[1:]
@@ -26,14 +27,14 @@ def stochastic_motions() -> Figure:
         corners = Corners(motions[0].metadata["source"])
         curve = PointSource(magnitude, 20e3, corners=corners).acceleration_spectrum(target)
         spectra.loglog(target, curve, color=colour, lw=1.8, label=f"magnitude {magnitude:g}")
-        history = figure.add_subplot(layout[row, 1])
         samples = motions[0].si.horizontal.samples
         time = motions[0].si.time_step * np.arange(samples.size)
         history.plot(time, samples, color=colour, lw=0.6)
-        history.set(xlim=(0.0, 48.0), ylabel="[m/s²]")
-        if row < 2:
-            history.tick_params(labelbottom=False)
-    history.set_xlabel("time [s]")
+    for history in histories:  # the motion of the strongest earthquake is the longest
+        history.set_xlim(0.0, time[-1])
+        history.tick_params(labelbottom=history is histories[-1])
+    histories[1].set_ylabel("ground acceleration [m/s²]")
+    histories[-1].set_xlabel("time [s]")
     spectra.set(
         xlim=(0.03, 50.0),
         ylim=(1e-4, 1.0),

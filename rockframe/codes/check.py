@@ -7,7 +7,7 @@ from rockframe.errors import ComponentError, short_repr
 from rockframe.measures.common import check_not_empty
 from rockframe.motion import GroundMotion
 from rockframe.motion.pair import motion_hint
-from rockframe.simulation.system import System
+from rockframe.simulation.system import System, system_hint
 from rockframe.system.rigid_ground import RigidGroundSetting
 from rockframe.system.stack import RestrainedSetting
 from rockframe.units import QuantityLike
@@ -21,7 +21,7 @@ def rigid_block_setting(
     With `allow_loads` it may carry loads that are masses, with `allow_sliding` it may slide.
     """
     if not isinstance(system, System):
-        msg = f"{owner}: system needs a System, got {short_repr(system)}"
+        msg = f"{owner}: system needs a System, got {short_repr(system)}{system_hint(system)}"
         raise ComponentError(msg)
     setting = system.setting
     level = system.options.slope.level

@@ -101,7 +101,7 @@ def circolare_2019(
     >>> import rockframe as rf
     >>> wall = rf.System(rf.Block(width="0.5 m", height="6 m", mass="5 t"), gravity="9.81 m/s^2")
     >>> spectrum = rf.TargetSpectrum.from_table(
-    ...     (["0.1 s", "4 s"]), ([2.0, 0.1], "m/s^2"), damping_ratio=0.08
+    ...     ["0.1 s", "4 s"], ([2.0, 0.1], "m/s^2"), damping_ratio=0.08
     ... )
     >>> check = rf.codes.circolare_2019(wall, spectrum, confidence_factor=1)
     >>> round(check.value("T_SLV"), 6)

@@ -14,8 +14,8 @@ import xarray as xr
 from rockframe import plot
 from rockframe.command.answer import Answer
 from rockframe.command.figures import PICTURE_KIND, save_figure
-from rockframe.command.files.scenes import SceneDescription, read_scene
-from rockframe.command.files.studies import AXES, CASES, KNOWN, StudyDescription, read_study
+from rockframe.command.files.scenes import AXES, CASES, SceneDescription, read_scene
+from rockframe.command.files.studies import KNOWN, StudyDescription, read_study
 from rockframe.command.files.tables import arguments_of
 from rockframe.command.main import INTERRUPTED
 from rockframe.command.runs import is_finished

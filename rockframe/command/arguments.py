@@ -109,11 +109,13 @@ READING_OPTIONS: Final = (
     ),
     *SAMPLE_OPTIONS,
 )
-ACCURACY_OPTION: Final = argument(
-    "--accuracy",
-    metavar="LEVEL",
-    help="fast, standard, reference, or a tolerance such as 1e-6; for fragility, ida and map also "
-    "screen",
+ACCURACY_OPTION, SWEEP_ACCURACY_OPTION = (
+    argument(
+        "--accuracy",
+        metavar="LEVEL",
+        help=f"fast, standard, reference{further}, or a tolerance such as 1e-6",
+    )
+    for further in ("", ", screen")
 )
 DURATION_OPTIONS: Final = (
     argument(
@@ -162,7 +164,7 @@ ANALYSIS_ARGUMENTS: Final = (
         help="limit states besides overturning: uplift, a rotation divided by the overturning "
         "angle, or a variable of runs, such as uplift,0.5,'peak_slip=5 cm'",
     ),
-    ACCURACY_OPTION,
+    SWEEP_ACCURACY_OPTION,
     *DURATION_OPTIONS,
     STORE_OPTION,
     OUTPUT_OPTION,

@@ -3,7 +3,6 @@
 from typing import Final
 
 from rockframe.command.arguments import (
-    ACCURACY_OPTION,
     ANALYSIS_ARGUMENTS,
     DURATION_OPTIONS,
     INTENSITY_OPTIONS,
@@ -17,6 +16,7 @@ from rockframe.command.arguments import (
     RUN_OPTIONS,
     SCENE_FILE,
     STORE_OPTION,
+    SWEEP_ACCURACY_OPTION,
     UNITS_OPTION,
     Command,
     argument,
@@ -146,7 +146,7 @@ COMMANDS: Final = (
             argument(
                 "--proved",
                 action="store_true",
-                help="prove the verdict instead (of a block alone; needs python-flint)",
+                help="prove the verdict of a block on rigid ground or pads (needs python-flint)",
             ),
             integer_option("--runs", "largest number of further runs (default: 200)"),
             OUTPUT_OPTION,
@@ -259,7 +259,7 @@ COMMANDS: Final = (
                 metavar="NAME",
                 help="sine_pulse or cosine_pulse (default: that of the scene, else sine_pulse)",
             ),
-            ACCURACY_OPTION,
+            SWEEP_ACCURACY_OPTION,
             *DURATION_OPTIONS,
             STORE_OPTION,
             OUTPUT_OPTION,

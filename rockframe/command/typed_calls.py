@@ -53,7 +53,7 @@ def parse_call(
     name, *typed = words
     if name not in functions:
         known = ", ".join(functions)
-        msg = f"{option}: there is no {name!r}{did_you_mean(name, functions)}; known are {known}"
+        msg = f"{option}: there is no {name!r}; known are {known}{did_you_mean(name, functions)}"
         raise ComponentError(msg)
     function = functions[name]
     first = tuple(arguments_of(function))[:before]

@@ -36,7 +36,8 @@ from rockframe.suggestions import Immutable, suggests_names
 from rockframe.units import to_ratio
 
 _LATER_SECTIONS: Final = (
-    "Attributes", "Methods", "Raises", "Warns", "See Also", "Notes", "References", "Examples",
+    "Other Parameters", "Attributes", "Methods", "Raises", "Warns", "See Also", "Notes",
+    "References", "Examples",
 )  # fmt: skip
 """Sections of a docstring that follow that on parameters."""
 _WIDTH: Final = 79

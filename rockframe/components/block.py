@@ -62,6 +62,11 @@ _SIZE_PARAMETERS: Final = {
 class Block(Component[BlockSI]):
     """A rigid rectangular block, or a body that rocks like one.
 
+    Other Parameters
+    ----------------
+    centre_of_mass : pair of str or Quantity, optional
+        `centre_height` and `eccentricity` together, such as ``("0.7 m", "0.05 m")`` [m].
+
     Raises
     ------
     UnitsError
@@ -81,8 +86,7 @@ class Block(Component[BlockSI]):
     A block rocks only while the greatest restitution, Eq. (4), is positive; for
     a solid rectangle that is H/B > sqrt(2)/2, Eq. (5).
 
-    ``centre_of_mass=("0.7 m", "0.05 m")`` gives `centre_height` and `eccentricity` together. The
-    moment of inertia about the centre of mass is that of the solid rectangle, wherever the
+    The moment of inertia about the centre of mass is that of the solid rectangle, wherever the
     centre of mass is, unless `inertia` or `shape_factor` is given. :meth:`from_outline`,
     :meth:`from_parts` and :meth:`cylinder` compute both.
 

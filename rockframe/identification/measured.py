@@ -243,7 +243,7 @@ def swings_of(history: History) -> Swings:
         msg = (
             f"{OWNER}: nothing rocks: the measured rotation, from {rotation[0]:.6g} rad at the "
             "start, never passes to the other side; give a history of a block that was tilted "
-            "and let go"
+            "and released"
         )
         raise ComponentError(msg)
     before, after = marked[side_changes[0]], marked[side_changes[0] + 1]

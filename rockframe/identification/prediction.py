@@ -155,7 +155,7 @@ def _find_parameter(
         raise ComponentError(msg)
     fault = "several parts have" if matches else "no part of the system has, as a pure ratio,"
     near = "" if matches else did_you_mean(name, {full.rpartition(".")[2] for full in known})
-    msg = f"{OWNER}: {fault} the parameter {short_repr(name)}{near}; expected one of {choice}"
+    msg = f"{OWNER}: {fault} the parameter {short_repr(name)}; expected one of {choice}{near}"
     raise ComponentError(msg)
 
 

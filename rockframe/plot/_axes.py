@@ -83,8 +83,9 @@ def add_legend(axes: "Axes", entries: tuple[Any, Any] | None = None, **style: An
     elif high > low > 0.0:
         axes.set_ylim(low, low * (1.05 * high / low) ** (1.0 / (1.0 - legend_share)))
     axes.legend(
-        handles, words, loc="upper right", ncols=columns, fontsize="small", frameon=False,
-        borderaxespad=0.2, handlelength=1.8, columnspacing=1.2, **style,
+        handles, words, loc="upper right", ncols=columns, fontsize="small",
+        frameon=True, edgecolor="none", borderaxespad=0.2, handlelength=1.8, columnspacing=1.2,
+        **style,
     )  # fmt: skip
 
 
@@ -193,8 +194,8 @@ def label_log_ticks(axes: "Axes", which: str = "xy") -> None:
             if not low > 0.0:  # nothing is drawn, such as the intensities of what never overturns
                 low, high = _EMPTY_LIMITS
                 axis.set_view_interval(low, high, ignore=True)
-            many_decades = high > _WIDE_RATIO * low
-            for subs in ((1.0,) if many_decades else (1.0, 2.0, 5.0), tuple(range(1, 10)), ()):
+            choices = ((1.0,), (1.0, 2.0, 5.0), tuple(range(1, 10)), ())
+            for subs in choices if high > _WIDE_RATIO * low else choices[1:]:
                 locator = LogLocator(subs=subs) if subs else MaxNLocator(5)
                 axis.set_major_locator(locator)
                 ticks = np.asarray(locator.tick_values(low, high))

@@ -10,7 +10,6 @@ from rockframe.plot._axes import (
     COLOURS,
     GREY,
     PEAK_CAP,
-    VERMILLION,
     as_label,
     figure_units,
     grid,
@@ -19,6 +18,7 @@ from rockframe.plot._axes import (
     limit_state_label,
     line_colour,
     line_style,
+    text_colour,
     variable_label,
 )
 from rockframe.plot._checks import draws, figure_data
@@ -166,9 +166,9 @@ def _draw_peaks(
         fractiles = _peak_fractiles(lines, up)
         for number, (share, values) in enumerate(fractiles):
             words, style = f"{100.0 * share:.0f} %", line_style(_FRACTILE_STYLES[number])
-            axes.plot(values, up, color=VERMILLION, ls=style, lw=1.6, label=words)
+            axes.plot(values, up, color=text_colour(), ls=style, lw=1.6, label=words)
         if np.min([peaks[-1] for _, peaks in fractiles]) < PEAK_CAP:
-            axes.axhline(up[-1], color=VERMILLION, ls=":", lw=0.8, label=_END_LABEL)
+            axes.axhline(up[-1], color=text_colour(), ls=":", lw=0.8, label=_END_LABEL)
     axes.set(xlabel=r"peak of $|\alpha|/\theta$ [-]", xlim=(0.0, 1.03))
 
 

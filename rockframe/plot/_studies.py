@@ -246,7 +246,7 @@ def _checked_runs(dataset: xr.Dataset, variable: object) -> xr.Dataset:
             repr(str(name)) for name, array in dataset.data_vars.items() if 0 < array.ndim < 3
         )
         near = did_you_mean(variable, map(str, dataset.data_vars))
-        msg = f"rf.plot.sweep: the runs have no {short_repr(variable)}{near}; they have {variables}"
+        msg = f"rf.plot.sweep: the runs have no {short_repr(variable)}; they have {variables}{near}"
         raise SchemaError(msg)
     sizes = dataset[variable].sizes
     if len(sizes) > _MAX_AXES and max(sizes.values()) > 1:

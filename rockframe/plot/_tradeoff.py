@@ -5,7 +5,7 @@ from typing import TYPE_CHECKING, Any, Final
 import numpy as np
 import xarray as xr
 
-from rockframe.plot._axes import GREY, grid, text_colour, unique_labels
+from rockframe.plot._axes import GREY, grid, label_log_ticks, text_colour, unique_labels
 from rockframe.plot._checks import draws, figure_data
 from rockframe.plot._panels import Axes, AxesLike, Panels, make_sheet
 from rockframe.units.display import UnitsLike
@@ -54,7 +54,6 @@ def tradeoff(
     ['integration: low and left is better', 'with that of the model: left is better']
     """
     from matplotlib import colormaps
-    from matplotlib.ticker import LogLocator, NullLocator, StrMethodFormatter
 
     figure_data(dataset, "tradeoff", units)
     models = [str(name) for name in dataset["model"].to_numpy()]
@@ -79,9 +78,7 @@ def tradeoff(
         grid(panel)
     axes[0].set(yscale="log", xlabel="time of a run [ms]", ylabel=_ERROR_LABEL)
     axes[0].set_title("integration: low and left is better")
-    axes[0].xaxis.set_major_locator(LogLocator(subs=(1.0, 2.0, 5.0)))
-    axes[0].xaxis.set_major_formatter(StrMethodFormatter("{x:g}"))
-    axes[0].xaxis.set_minor_locator(NullLocator())
+    label_log_ticks(axes[0], "x")
     axes[1].set(
         yticks=range(len(models)),
         yticklabels=unique_labels(models),

@@ -194,16 +194,12 @@ class SlidingCheck:
             digits += 1
             needed, friction = (f"{one:.{digits}g}" for one in both)
         slides = f"would slide from {self.first:.4g} s on: needs"
+        lack = f"too little for {self.duration:.3g} s in all"
         if not math.isfinite(self.needed):
-            return (
-                f"{slides} more than any floor has, and more than {friction} for "
-                f"{self.duration:.3g} s in all"
-            )
+            return f"{slides} more friction than any floor has; its {friction} is {lack}"
         if not self.slides:
-            return f"would not slide: needs {needed} of {friction}"
-        return (
-            f"{slides} {needed} of {friction}, and more than that for {self.duration:.3g} s in all"
-        )
+            return f"would not slide: needs a friction of {needed}, has {friction}"
+        return f"{slides} a friction of {needed}, has {friction}, {lack}"
 
 
 def has_friction_limit(system: Assembly) -> bool:
@@ -272,11 +268,11 @@ def friction_words(scalars: Mapping[str, AnyArray | float], checks: Sequence[Sli
 
 def sliding_cautions(checks: Sequence[SlidingCheck]) -> list[str]:
     """Return a caution for each base that has less friction than a run needs."""
-    return [f"{one.body} {one.words}; the model holds it" for one in checks if one.slides]
+    return [f"{one.body} {one.words}; this model keeps it in place" for one in checks if one.slides]
 
 
 def share_words(would_slide: AnyArray, *, runs: str = "runs") -> str:
-    """Say in how many runs of an analysis the block would slide, though its model holds it."""
+    """Say in how many runs of an analysis the block would slide, if it could."""
     slide, hold = count_slides(would_slide)
     some = f"in {slide or 'none'} of {slide + hold} {runs}"
     return f"{some} the block would slide first" if slide + hold else ""

@@ -35,7 +35,7 @@ _PLACES: Final = (POINT, BODY, RESTRAINER)
 _DIMENSION_OF: Final = {Contents.HISTORIES: TIME[0], Contents.EVENTS: EVENT[0]}
 _MISSING: Final = {
     Contents.SCALARS: "rf.table(response, 'histories') and 'events' give what is along time",
-    Contents.HISTORIES: "a run with outputs=None keeps none, nor does rf.concat unless asked to",
+    Contents.HISTORIES: "a run with outputs=None keeps none, rf.concat only with histories=True",
     Contents.EVENTS: "rf.concat keeps none; give the runs themselves",
 }
 

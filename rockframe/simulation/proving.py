@@ -10,7 +10,7 @@ from rockframe.motion import GroundMotion
 from rockframe.proof.verdict import Proof, Tolerances
 from rockframe.simulation.plan import Plan, plan_run
 from rockframe.simulation.run_proof import prove_run
-from rockframe.simulation.system import System
+from rockframe.simulation.system import System, system_hint
 from rockframe.suggestions import with_hints
 from rockframe.system.assembly import Assembly
 from rockframe.units import ANGLE, POSITIVE, Condition, QuantityLike, RatioLike, to_ratio, to_si
@@ -228,7 +228,7 @@ def _plan_proof(
     """Plan the run about which something is to be proved."""
     assembly = getattr(system, "assembly", None)
     if not isinstance(assembly, Assembly):
-        msg = f"{owner}: system must be a System, got {short_repr(system)}"
+        msg = f"{owner}: system must be a System, got {short_repr(system)}{system_hint(system)}"
         raise ComponentError(msg)
     still = motion is None and assembly.parts.motion is None
     length = "1 s" if still else None

@@ -188,7 +188,7 @@ def _scene_faults(kind: type[OwnScene]) -> list[str]:
 _REQUIRED_MEMBERS: Final = {
     "model": "name model, such as model = 'slide-rock'",
     "contact_model": "method contact_model(), which gives its equations",
-    "words": "method words(), which describe() tells",
+    "words": "method words(), the text of describe()",
 }
 """What the class of a scene must define."""
 

@@ -10,7 +10,7 @@ from typing import Any, Literal, Self
 import xarray as xr
 
 from rockframe.arguments import checked_bool, checked_dataset
-from rockframe.components import InitialState
+from rockframe.components import Component, InitialState
 from rockframe.errors import ComponentError, ModelWarning, warn
 from rockframe.motion import GroundMotion
 from rockframe.simulation.provenance import (
@@ -496,5 +496,10 @@ class System(metaclass=SuggestingMeta):
 def check_system(value: object, owner: str) -> None:
     """Refuse anything but a System."""
     if not isinstance(value, System):
-        msg = f"{owner}: system needs a System, got {type(value).__name__}"
+        msg = f"{owner}: system needs a System, got {type(value).__name__}{system_hint(value)}"
         raise ComponentError(msg)
+
+
+def system_hint(value: object) -> str:
+    """Show at the end of a message how a system is made of a component; empty for other values."""
+    return "; write rf.System(block, ...)" if isinstance(value, Component) else ""

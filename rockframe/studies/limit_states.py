@@ -106,8 +106,8 @@ def _variable_limit(items: tuple[Any, ...], owner: str) -> LimitState:
         scalars = [row.name for row in SCHEMA.values() if TIME[0] not in row.dims]
         near = did_you_mean(name, scalars)
         msg = (
-            f"{owner}: limits: no variable of runs is called {name!r}{near}; a limit state is for "
-            "example ('peak_slip', '5 cm')"
+            f"{owner}: limits: no variable of runs is called {name!r}; a limit state is for "
+            f"example ('peak_slip', '5 cm'){near}"
         )
         raise ComponentError(msg)
     if not isinstance(name, str) or not name:
@@ -243,4 +243,4 @@ def _scalar_hint(runs: xr.Dataset, name: str) -> str:
         )
     numbers = [str(variable) for variable, values in runs.items() if values.dtype.kind in "fiu"]
     near = did_you_mean(name, numbers)
-    return f"{near}; they have {', '.join(numbers)}"
+    return f"; they have {', '.join(numbers)}{near}"

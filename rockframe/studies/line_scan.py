@@ -341,7 +341,7 @@ class LineScan:
         if not completed:
             text = str(scan.attrs["verdict"]).removesuffix(".")
             scan.attrs["verdict"] = f"{text}{INTERRUPTED_ENDING}"
-            msg = f"{self.owner}: interrupted; brackets are wider than asked{rounds.advice}"
+            msg = f"{self.owner}: interrupted; brackets are wider than requested{rounds.advice}"
             warn(msg, SolverWarning)
         return LineResults(scan, verdicts, brackets)
 

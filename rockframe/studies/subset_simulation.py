@@ -235,7 +235,7 @@ def _read_limit(argument: object) -> LimitState:
     state = limit_states([argument], owner=_OWNER, name="limit")[0]
     if not (state.rotation > 0.0 or state.value > 0.0):
         msg = (
-            f"{_OWNER}: limit {state.name!r} is met or not, and no response tells how near it is; "
+            f"{_OWNER}: limit {state.name!r} is met or not, and no response shows how near it is; "
             "give 'overturning', a peak rotation over the overturning angle such as 0.1, or a "
             "variable of runs and a value above zero"
         )

@@ -125,7 +125,7 @@ class TargetSpectrum(metaclass=SuggestingMeta):
 
         Examples
         --------
-        >>> target = TargetSpectrum.from_table((["0.1 s", "1 s"]), ([2.0, 0.2], "m/s^2"))
+        >>> target = TargetSpectrum.from_table(["0.1 s", "1 s"], ([2.0, 0.2], "m/s^2"))
         >>> target.at(["0.2 s"]).round(3).tolist()
         [1.0]
         """

@@ -63,15 +63,15 @@ class OwnScene(OwnAnswers, Setting):
 
     def curve(self, rotations: Sequence[float]) -> list[Statics | None]:
         """Return the quasi-static states at rotations [rad]; refused unless overridden."""
-        self._raise_undefined("tells no quasi-static states", "curve(rotations)")
+        self._raise_undefined("has no quasi-static states", "curve(rotations)")
 
     def equilibrium(self) -> dict[str, float]:
         """Return settlements and reactions at rest; refused unless overridden."""
-        self._raise_undefined("tells nothing of rest", "equilibrium()")
+        self._raise_undefined("has no state of rest", "equilibrium()")
 
     def without_small_motion(self) -> str:
         """Say that the scene does not give equations of small motion."""
-        return f"{self.model} tells no small motion; it is for its class to give small_motion()"
+        return f"{self.model} has no small motion; its class must define small_motion()"
 
     def start_faults(self, rotation: float, has_vertical_start: bool) -> list[str]:
         """Refuse a vertical start, unless overridden."""
@@ -81,7 +81,7 @@ class OwnScene(OwnAnswers, Setting):
         return [f"{sentence}{self.model}"]
 
     def _raise_undefined(self, words: str, method: str) -> NoReturn:
-        raise AssemblyError([f"{self.model} {words}; it is for its class to give {method}"])
+        raise AssemblyError([f"{self.model} {words}; its class must define {method}"])
 
     def compile(self) -> ContactModel:
         """Return the equations, ready for the integrator.

@@ -424,9 +424,9 @@ def test_too_little_friction_warns_with_time_and_duration():
     assert response.sliding_time == pytest.approx(stated, rel=1e-3)
     assert first - (time[1] - time[0]) <= stated <= first
     assert float(text.split("for ")[1].split(" s in all")[0]) == pytest.approx(lasted, rel=0.05)
-    assert f"needs {reference.peak_friction_demand.item():.3g} of 0.25, " in text
-    statement = text.removeprefix("the block ").removesuffix("; the model holds it")
-    assert response.attrs["verdict"].endswith(f"; 1 impact. {statement.capitalize()}.")
+    assert f"needs a friction of {reference.peak_friction_demand.item():.3g}, has 0.25, " in text
+    statement = text.removeprefix("the block ").removesuffix("; this model keeps it in place")
+    assert response.attrs["verdict"].endswith(f"; 1 impact. {statement[0].upper()}{statement[1:]}.")
     assert response.attrs["cautions"] == text
     np.testing.assert_array_equal(response.rotation, reference.rotation)
     most = reference.peak_friction_demand.item()
@@ -437,13 +437,13 @@ def test_too_little_friction_warns_with_time_and_duration():
     assert np.isnan(holds.sliding_time)
     assert holds.sliding_duration == 0
     assert holds.attrs["verdict"].endswith(
-        f"Would not slide: needs {most:.3g} of {1.01 * most:.3g}."
+        f"Would not slide: needs a friction of {most:.3g}, has {1.01 * most:.3g}."
     )
     with pytest.warns(ModelWarning, match="the frame would slide from"):
         rf.System(FRAME, ground).simulate(PULSE)
     # similar numbers are printed with enough digits to distinguish them
     almost = rf.RigidGround(friction=(1.0 - 1e-6) * most)
-    with pytest.warns(ModelWarning, match="needs 0.33[0-9]{4,} of 0.33[0-9]{4,},"):
+    with pytest.warns(ModelWarning, match="needs a friction of 0.33[0-9]{4,}, has 0.33[0-9]{4,},"):
         rf.System(BLOCK, almost, sliding="checked").simulate(PULSE)
 
 

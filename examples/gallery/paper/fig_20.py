@@ -1,6 +1,6 @@
 """
-Figure 20: the six-storey frame let go
-======================================
+Figure 20: the six-storey frame, released
+=========================================
 
 The six-storey frame is tilted by 0.10 rad on its pads and released, on soils from 3 to 12 MPa. The
 soil has no influence in the cascade of Eq. (20), since its first stage stays at rest.

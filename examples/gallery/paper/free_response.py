@@ -1,4 +1,4 @@
-"""What the scripts of Figs. 19 and 20 share: frames let go from 0.10 rad, and their drawing."""
+"""What the scripts of Figs. 19 and 20 share: frames released from 0.10 rad, and their drawing."""
 
 from itertools import product
 
@@ -19,7 +19,7 @@ NAMES = {"rotation": r"rotation $\alpha$ [rad]", "vertical_displacement": "verti
 def released(
     storeys: int, seconds: int
 ) -> dict[tuple[int, worked_example.Coupling, int], xr.Dataset]:
-    """Let a frame go, on three pads, by cascade and coupled on soft and on stiff soil."""
+    """Release a frame, on three pads, by cascade and coupled on soft and on stiff soil."""
     return {
         (ratio, coupling, soil): worked_example.scene(storeys, ratio, coupling, soil=soil).simulate(
             duration=f"{seconds} s",

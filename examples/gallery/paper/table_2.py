@@ -42,7 +42,7 @@ for axes, storeys in zip(grid, worked_example.STOREYS, strict=True):
             duration="10 s", initial=rf.InitialState(rotation="0.1 rad"), output_step="0.02 s"
         )
         axes.plot(run.time, np.degrees(run.rotation), color=colour, lw=1.2, label=name)
-    axes.set(title=f"{storeys} storeys, let go from 0.10 rad", xlabel="time [s]")
+    axes.set(title=f"{storeys} storeys, released from 0.10 rad", xlabel="time [s]")
 grid[0].set_ylabel("rotation [deg]")
 grid[0].legend(frameon=False)
 plt.show()

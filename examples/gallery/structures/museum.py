@@ -53,9 +53,9 @@ for place, (name, block) in enumerate(objects.items()):
     axes.plot(least.median(), place, "|", ms=22, mew=2.5, color="#d55e00")
     print(f"{name:<30} falls at a peak of {float(least.median()):.2f} g on its floor (median)")
 axes.set_yticks(range(len(objects)), objects)
-axes.set(xlabel="peak floor acceleration that overturns [g]", xscale="log")
+axes.set(xlabel="peak floor acceleration that overturns [g]; bar: median", xscale="log")
 ticks = [0.3, 0.5, 1.0, 2.0, 3.0]
 axes.set_xticks(ticks, [f"{tick:g}" for tick in ticks])
 axes.tick_params(axis="x", which="minor", labelbottom=False)
-axes.invert_yaxis()
+axes.set_ylim(len(objects) - 0.5, -0.5)
 plt.show()

@@ -141,6 +141,9 @@ OPTIONS: Final = "system"
 MOTION: Final = "motion"
 RUN: Final = "run"
 PROJECT: Final = "project"
+AXES: Final = "axes"
+CASES: Final = "cases"
+"""What only a study has, one of them."""
 
 
 def scene_keys() -> tuple[str, ...]:
@@ -162,6 +165,10 @@ class SceneDescription:
 def read_scene(path: str | Path) -> SceneDescription:
     """Read the file of a scene."""
     file = TomlFile.read(path)
+    for name in file.values.keys() & {AXES, CASES}:
+        words = "belongs to a study, which 'rockframe study' runs; give the file of a scene"
+        file.add_fault((name,), f"{name!r} {words}")
+        raise file.error()
     import_modules(file)  # before the keys are checked: its parts may add tables
     for name in file.values:
         if name not in scene_keys():

@@ -7,6 +7,8 @@ from pathlib import Path
 from typing import Any, Final
 
 from rockframe.command.files.scenes import (
+    AXES,
+    CASES,
     PROJECT,
     RUN,
     SceneDescription,
@@ -34,8 +36,6 @@ from rockframe.suites import read_suite
 
 SCENE: Final = "scene"
 MOTIONS: Final = "motions"
-AXES: Final = "axes"
-CASES: Final = "cases"
 STORE: Final = "store"
 OUTPUT: Final = "output"
 SWEEP: Final = "sweep"

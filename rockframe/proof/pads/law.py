@@ -305,7 +305,7 @@ def _lift_off(
     if opposite == TOUCHING:
         require(
             reaction(pads, not left, corner_motion(pads, not left, state)).value > 0,
-            "both corners let go at once",
+            "both corners lift off at once",
         )
     elif opposite in (ENGAGING, LEAVING):
         opposite = RELAXING

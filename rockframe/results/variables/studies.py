@@ -112,9 +112,9 @@ FREE_DECAY: Final = (
     ),
     *rows_over(
         (),
-        initial_rotation="rotation from which the block was let go [rad]",
+        initial_rotation="rotation from which the block was released [rad]",
         initial_rotation_error="standard error of the initial rotation [rad]",
-        release_time="time at which the block was let go [s]",
+        release_time="time at which the block was released [s]",
         release_time_error="standard error of the release time [s]",
         gauge_offset="reading of the gauge while the block is upright [rad]",
         gauge_offset_error="standard error of the gauge's offset [rad]",

@@ -261,7 +261,7 @@ def _fit_counts(
 ) -> xr.Dataset:
     """Fit a capacity to counts: intensities, and how many of how many trials exceeded there."""
     if set(counts) != set(_COLUMNS) or given or not isinstance(measure, str):
-        names = ", ".join(map(short_repr, [*counts, *given]))
+        names = ", ".join(map(short_repr, [*counts, *given])) or "none"
         msg = (
             f"{_OWNER}: counts have {', '.join(map(repr, _COLUMNS))} and go with one name of a "
             f"measure, without limits, motions and pooled; found {names} and {short_repr(measure)}"

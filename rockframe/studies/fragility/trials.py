@@ -58,9 +58,7 @@ def structures_of(
     differing = [name for name in changed if name in runs.coords or name in dims]
     missing = [name for name in changed if name not in differing]
     if missing and CASE in dims:
-        msg = (
-            f"{owner}: found a sweep without its coordinate {missing[0]!r}, which tells cases apart"
-        )
+        msg = f"{owner}: found a sweep without its coordinate {missing[0]!r}"
         raise SchemaError(msg)
     known_dims = {
         str(dim) for name in (MOTION, *axes, *own_measures) if name in runs.variables

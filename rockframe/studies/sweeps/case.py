@@ -127,7 +127,7 @@ def case(
     >>> float(alone.peak_rotation) == float(runs.peak_rotation.sel(scale=1.4).squeeze())
     True
     """
-    dataset = runs if isinstance(runs, xr.Dataset) else open_study(runs)
+    dataset = _read_runs(runs)
     attributes: Mapping[str, Any] = cast("Mapping[str, Any]", dataset.attrs)
     if not set(SWEEP_ATTRIBUTES) <= set(attributes):
         msg = (
@@ -167,6 +167,19 @@ def case(
     return SweepCase(system, motion, options)
 
 
+def _read_runs(runs: object) -> xr.Dataset:
+    """Read the argument ``runs``."""
+    if isinstance(runs, xr.Dataset):
+        return runs
+    if isinstance(runs, str | PathLike):
+        return open_study(runs)  # pyright: ignore[reportUnknownArgumentType]
+    msg = (
+        f"{_OWNER}: runs must be the result of rf.sweep or the folder of its store, got "
+        f"{short_repr(runs)}"
+    )
+    raise SchemaError(msg)
+
+
 def system_of_case(dataset: xr.Dataset, *, owner: str) -> System:
     """Return the system of a sweep, with the values of those axes along which one was selected."""
     values: dict[Axis, Any] = {}
@@ -189,8 +202,8 @@ def _indices_of_case(
     unknown = [name for name in labels if name not in (*dims, *fixed)]
     missing = [name for name in dims if name not in labels and dataset.sizes[name] > 1]
     faults = [
-        f"there is no axis {name!r}{did_you_mean(name, (*dims, *fixed))}; there are "
-        f"{', '.join(dims)}"
+        f"there is no axis {name!r}; there are {', '.join(dims)}"
+        f"{did_you_mean(name, (*dims, *fixed))}"
         for name in unknown
     ]
     faults += [f"give a value of {name!r}" for name in missing]

@@ -48,8 +48,8 @@ def description_of(value: object) -> Any:
     if callable(value):
         return _describe_function(value)
     msg = (
-        f"found {short_repr(value)}, of which nothing tells whether it is the same in another "
-        "process; expected numbers, words, arrays, motions, components or dataclasses of them"
+        f"found {short_repr(value)}, which cannot be recognised in another process; "
+        "expected numbers, words, arrays, motions, components or dataclasses of them"
     )
     raise StudyError(msg)
 

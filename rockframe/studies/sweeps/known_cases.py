@@ -85,7 +85,7 @@ class _Source:
         if tables or not isinstance(study.scene, SystemScene):
             msg = (
                 f"known: from {folder} cases can be taken where both studies are grids of one "
-                "system: of a function or a table nothing tells which cases are the same"
+                "system; cases of a function or a table cannot be recognised"
             )
             raise StudyError(msg)
         kinds = [{axis.name: axis.to_dict() for axis in grid.axes} for grid in grids]

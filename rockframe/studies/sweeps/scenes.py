@@ -16,7 +16,7 @@ from rockframe.motion import GroundMotion
 from rockframe.results.schema import SCHEMA
 from rockframe.shared_arguments import suggestion
 from rockframe.signals.arrays import AnyArray
-from rockframe.simulation.system import System
+from rockframe.simulation.system import System, system_hint
 from rockframe.studies.sweeps.arguments import SWEEP_ARGUMENT_NAMES
 from rockframe.studies.sweeps.axes import (
     OWNER,
@@ -276,7 +276,7 @@ def scene_of(value: object) -> SweptScene:
         return FunctionScene(value)
     msg = (
         "scene must be a System, or a function of the axes that returns one, got "
-        f"{short_repr(value)}"
+        f"{short_repr(value)}{system_hint(value)}"
     )
     raise StudyError(msg)
 

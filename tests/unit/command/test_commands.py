@@ -314,7 +314,7 @@ def test_study_report_accepts_records_target_and_checks(run_command, folder, mon
     assert "dynamic, SLV: " in (folder / "out.html").read_text()
     (folder / "bad.csv").write_text("T [s],Sa [g]\n0.1,0.5\n")
     for words, message in (
-        (["--target", "eurocode8"], "there is no 'eurocode8'; was 'eurocode_8' meant?"),
+        (["--target", "eurocode8"], "known are eurocode_8, asce_7; was 'eurocode_8' meant?"),
         (["--target", "asce_7", "one=2 g_0"], "has no 'one'"),
         (["--target", "asce_7"], "needs short_period_acceleration=..."),
         (["--target", "bad.csv"], "found the columns T [s], Sa [g]; expected columns 'period [s]'"),
@@ -360,7 +360,7 @@ def test_project_table_of_a_scene_appears_in_reports(run_command, folder):
     text = (folder / "python.html").read_text()
     assert "Not checked</strong>Requested: circolare_2019 confidence_factor=1.2; asce_7_22" in text
     for wrong, message in (
-        ("circolare", "there is no 'circolare'"),
+        ("circolare", "known are circolare_2019, asce_7_22; was 'circolare_2019' meant?"),
         ("circolare_2019 factor=1", "circolare_2019 has no 'factor'"),
         ("asce_7_22", "asce_7_22 needs spectral_acceleration=..."),
         ("", "found an empty check"),
@@ -387,6 +387,10 @@ WRONG = {
     "no dataset": (["plot", "scene.toml", "-o", "x.png"], "no netCDF file"),
     "no result": (["report", "none.nc"], "none.nc: there is no such file"),
     "no study": (["study", "scene.toml"], "a study needs [axes]"),
+    "a study": (
+        ["run", "study.toml"],
+        "run: study.toml, line 3: 'axes' belongs to a study, which 'rockframe study' runs",
+    ),
     "a broken scene": (["describe", "broken.toml"], "broken.toml, line 2: "),
 }
 
@@ -394,10 +398,14 @@ WRONG = {
 @pytest.mark.parametrize("name", WRONG)
 def test_errors_are_printed_without_a_traceback(name, run_command, folder):
     (folder / "broken.toml").write_text("[block]\nwidth = 3\n")
+    (folder / "study.toml").write_text(
+        'scene = "scene.toml"\nstore = "kept"\n[axes]\nscale = [1]\n'
+    )
     words, expected = WRONG[name]
     code, out, err = run_command(*words)
     assert code == 2
     assert expected in out + err
+    assert err.count("unknown key") == 0
     assert "Traceback" not in err
 
 
@@ -633,3 +641,11 @@ def test_axis_of_a_stack_part_is_refused_for_a_file(run_command, folder):
     assert code == 2
     assert "a part of the Stack; no file of a study varies it: write a scene for each" in err
     assert "function" not in err
+
+
+@pytest.mark.parametrize(
+    "name", ["run", "certify", "critical", "animate", "fragility", "ida", "map"]
+)
+def test_help_offers_the_accuracies_that_a_command_takes(name, run_command):
+    _, text, _ = run_command(name, "--help")
+    assert ("screen" in text) == (name in {"fragility", "ida", "map"})

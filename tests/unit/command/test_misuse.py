@@ -21,6 +21,8 @@ WORDS = {
     "rnu scene.toml": "was 'run' meant?",
     "Run scene.toml": "'Run' is no command; was 'run' meant?",
     "frobnicate": "'frobnicate' is no command. There are template, ",
+    "simulate scene.toml": "was 'run' meant?",
+    "sweep study.toml": "was 'study' meant?",
     "critcal scene.toml": "was 'critical' meant?",
     "run scene.toml --outptu x.nc": "was '--output' meant?",
     "run scene.toml --Json": "was '--json' meant?",

@@ -1,6 +1,7 @@
 """Speed and accuracy: measured errors and times, recommendations."""
 
 import importlib
+import itertools
 import json
 import re
 
@@ -405,6 +406,17 @@ def test_tradeoff_figure_labels_models_and_axes(measured):
     assert len(left.lines) >= 4 * 4
     assert "low and left is better" in left.get_title()
     assert "left is better" in right.get_title()
+
+
+def test_times_over_many_decades_have_labels_that_do_not_overlap(measured):
+    times = np.geomspace(4e-4, 2.5, measured.run_time.size).reshape(measured.run_time.shape)
+    axes = rf.plot.tradeoff(measured.assign(run_time=measured.run_time.copy(data=times)))[0]
+    FigureCanvasAgg(axes.figure).draw()
+    low, high = axes.get_xlim()
+    labels = [label for label in axes.get_xticklabels() if low <= label.get_position()[0] <= high]
+    boxes = [label.get_window_extent() for label in labels]
+    assert len(boxes) >= 3
+    assert all(left.x1 < right.x0 for left, right in itertools.pairwise(boxes))
 
 
 def legend(figure):

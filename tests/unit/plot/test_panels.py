@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 from matplotlib import pyplot as plt
 from matplotlib.axes import Axes
-from matplotlib.colors import to_rgb
+from matplotlib.colors import to_hex, to_rgb
 
 import rockframe as rf
 from rockframe.errors import ComponentError, SchemaError, UnitsError
@@ -262,8 +262,8 @@ def test_dynamic_analysis_plot_shows_runs_and_fractiles():
         f"{k}": rf.GroundMotion.sine_pulse(f"{2.6 + 0.2 * k} m/s^2", "1 Hz") for k in range(7)
     }
     result = rf.incremental_dynamic_analysis(
-        system, motions, scale=[0.5, 1.0, 1.5, 2.0, 3.0], intensity="PGA", free_vibration="3 s",
-        progress=False,
+        system, motions, scale=[0.5, 1.0, 1.5, 2.0, 3.0], limits=[0.5], intensity="PGA",
+        free_vibration="3 s", progress=False,
     )  # fmt: skip
     panels = rf.plot.dynamic_analysis(result)
     assert [axes.get_ylabel()[:24] for axes in panels] == ["peak ground acceleration", ""]
@@ -281,9 +281,13 @@ def test_dynamic_analysis_plot_shows_runs_and_fractiles():
     # half of the motions overturn where the median line becomes horizontal
     level = up[np.argmax(named["50 %"].get_xdata() >= 1.0)]
     capacity = np.sort(
-        result.capacity_scale.squeeze() * result.peak_ground_acceleration.sel(scale=1)
+        result.capacity_scale.sel(limit_state="overturning")
+        * result.peak_ground_acceleration.sel(scale=1)
     )
     assert level == pytest.approx(capacity[3], abs=2.0 * (up[1] - up[0]))
+    (legend,) = panels.figure.legends
+    looks = [(to_hex(line.get_color()), line.get_linestyle()) for line in legend.get_lines()]
+    assert len(set(looks)) == len(looks) > 4
     few = rf.plot.dynamic_analysis(result.isel(motion=slice(0, 3)))
     named = [line.get_label() for line in lines(few[0])]
     assert named == ["0", "1", "2"]

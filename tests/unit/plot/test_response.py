@@ -196,3 +196,15 @@ def test_moment_rotation_before_a_wall_covers_only_the_free_side():
         axes = rf.plot.moment_rotation(rf.System(block, rf.RearWall(side=side)))
         angles = sign * axes.get_lines()[0].get_xdata()
         assert (angles.min(), angles.max()) == pytest.approx((0.0, 1.2 * 11.3099), abs=1e-3)
+
+
+def test_time_of_overturning_does_not_cross_the_legend():
+    """The line at the end of a run lies behind the words."""
+    run = rf.System(rf.Block(width="0.5 m", height="2 m", mass="400 kg")).simulate(
+        rf.GroundMotion.sine_pulse("6 m/s^2", "1 Hz")
+    )
+    rotation = rf.plot.response({"falls": run, "too": run}, panels="rotation")[0]
+    (line,) = {line.get_zorder() for line in rotation.get_lines() if line.get_linestyle() == ":"}
+    legend = rotation.get_legend()
+    assert legend.get_frame_on()
+    assert line < legend.get_zorder()

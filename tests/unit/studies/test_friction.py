@@ -22,9 +22,9 @@ def messages_of(runs):
 
 
 def test_friction_warning_does_not_depend_on_histories():
-    with pytest.warns(ModelWarning, match=f"{SLIDES} .* of 0.2, ") as caught:
+    with pytest.warns(ModelWarning, match=f"{SLIDES} .* has 0.2, ") as caught:
         run = SLIPPERY.simulate(PULSE, free_vibration="3 s")
-    with pytest.warns(ModelWarning, match=f"{SLIDES} .* of 0.2, ") as again:
+    with pytest.warns(ModelWarning, match=f"{SLIDES} .* has 0.2, ") as again:
         bare = SLIPPERY.simulate(PULSE, free_vibration="3 s", outputs=None)
     assert [str(one.message) for one in again] == [str(one.message) for one in caught]
     assert bare.attrs["cautions"] == run.attrs["cautions"]

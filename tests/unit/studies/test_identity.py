@@ -225,7 +225,7 @@ def test_description_covers_all_fields_and_refuses_unknown_objects():
     assert len(set(digests)) == len(digests)
     assert digest_of(description_of(Arguments(1.0, ("a", "b")))) == digests[0]
     for unknown in (object(), {1, 2}, Arguments(1.0, (), object()), {"a": object()}):
-        with pytest.raises(StudyError, match="nothing tells whether it is the same"):
+        with pytest.raises(StudyError, match="cannot be recognised in another process"):
             description_of(unknown)
 
 

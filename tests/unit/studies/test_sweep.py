@@ -420,7 +420,10 @@ def test_missing_cases_are_refused():
     runs = rf.sweep(SYSTEM, PULSE, scale=[1.0, 2.0], width=["0.7 m", "0.8 m"], **FAST)
     for labels, words in (
         ({"scale": 1.0}, "give a value of 'width'"),
-        ({"scale": 1.0, "depth": 2.0}, "no axis 'depth'; was 'width' meant"),
+        (
+            {"scale": 1.0, "depth": 2.0},
+            "no axis 'depth'; there are .*, motion; was 'width' meant",
+        ),
         ({"scale": 1.5, "width": "0.7 m"}, "scale has no 1.5; it has 1.0, 2.0"),
         ({"scale": 1.0, "width": 0.7, "motion": 1}, "there is no motion 1; expected a name"),
     ):

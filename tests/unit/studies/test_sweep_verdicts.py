@@ -88,7 +88,7 @@ def test_messages_of_many_cases_are_merged(tmp_path):
     assert " to " in text
     for message in (text, one):
         assert message.startswith("the block would slide from ")
-        assert " of 0.1, and more than that for " in message
+        assert ", has 0.1, too little for " in message
     for rows in (many.to_dataframe(), rf.table(many)):
         assert len(rows) == len(scales)
         assert rows["message"].tolist() == many.message.values.ravel().tolist()
