@@ -132,6 +132,11 @@ MISTAKES = {
         TypeError,
         ["'radius', which Block.from_size can take. It takes width"],
     ),
+    "a peak as a factor": (
+        lambda: PULSE.scaled("0.3 g_0"),
+        UnitsError,
+        ["write for example factor=2, or peak='0.3 g_0'"],
+    ),
     "an argument of a run as one of a system": (
         lambda: rf.System(rf.Block(width="1 m", height="4 m", mass="1 t"), accuracy="fast"),
         TypeError,

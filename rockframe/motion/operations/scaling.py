@@ -112,7 +112,7 @@ def scaled(
         msg = f"{owner}: give spectral_acceleration and period together (damping_ratio is optional)"
         raise ComponentError(msg)
     if factor is not None:
-        ratio = to_ratio(factor, owner=owner, name="factor", example="2")
+        ratio = to_ratio(factor, owner=owner, name="factor", example="2, or peak='0.3 g_0'")
         return _scale_motion(motion, ratio, f"scaled by {ratio!r}", {"factor": ratio})
     ((name, value),) = values.items()
     what, measure = _TARGETS[name]
