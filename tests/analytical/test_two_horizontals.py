@@ -251,6 +251,15 @@ def test_rotation_to_azimuth_includes_vertical_component():
     np.testing.assert_allclose(north.si.horizontal.samples, expected, atol=1e-12)
 
 
+def test_vertical_spectra_of_several_pairs_need_all_vertical_components():
+    plain = rf.HorizontalPair(noise(1), noise(2))
+    whole = rf.HorizontalPair(noise(1), noise(2), noise(3))
+    for pairs, has_vertical in (((whole, plain), False), ((whole, whole), True)):
+        found = rf.rotated_spectrum(dict(enumerate(pairs)), ["0.5 s"], directions=4)
+        assert ("vertical_spectral_acceleration" in found) == has_vertical
+        assert found.motion.values.tolist() == ["0", "1"]
+
+
 def test_average_spectral_acceleration_is_geometric_mean():
     motion = noise(7)
     periods = np.linspace(0.2, 3.0, 15)

@@ -1,7 +1,9 @@
 """Signals: one function of time per component, evaluated at any time."""
 
 import copy
+import hashlib
 import pickle
+import struct
 
 import numpy as np
 import pytest
@@ -90,6 +92,18 @@ def test_the_vertical_component_has_its_own_pieces():
     assert Motion(RECORD, ANALYTIC).analytic
     assert not Motion(RECORD, RECORD).analytic
     assert Motion(RECORD, ANALYTIC).digest != motion.digest
+
+
+def test_the_digest_is_that_of_all_numbers():
+    """By hand: step, horizontal and vertical samples, and polynomials, each after its size."""
+    samples = np.array([0.0, 2.0, -1.0])
+    content = b"rockframe motion 1" + struct.pack("<dq3d", 0.5, 3, *samples)
+    missing = struct.pack("<q", -1)
+    expected = hashlib.sha256(content + 3 * missing).hexdigest()
+    assert Motion.of_samples(0.5, samples).digest == expected
+    content += struct.pack("<q3d", 3, *-samples) + 2 * missing
+    expected = hashlib.sha256(content).hexdigest()
+    assert Motion.of_samples(0.5, samples, -samples).digest == expected
 
 
 def test_both_components_are_changed_alike():
