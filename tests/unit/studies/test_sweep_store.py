@@ -272,7 +272,11 @@ def test_a_file_that_is_there_is_kept(tmp_path, monkeypatch, links):
     if not links:
         monkeypatch.setattr(store.Path, "hardlink_to", refused)
     file = tmp_path / "study.json"
-    for content, replace, expected in ((b"1", False, b"1"), (b"2", False, b"1"), (b"3", True, b"3")):
+    for content, replace, expected in (
+        (b"1", False, b"1"),
+        (b"2", False, b"1"),
+        (b"3", True, b"3"),
+    ):
         write_atomically(file, content, replace=replace)
         assert file.read_bytes() == expected
         assert [*tmp_path.iterdir()] == [file]
