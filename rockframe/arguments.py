@@ -14,11 +14,14 @@ from rockframe.errors import ComponentError, SchemaError, did_you_mean, short_re
 Option = TypeVar("Option", bound=StrEnum)
 
 
-def with_string_keys(values: Mapping[Any, Any], *, owner: str) -> dict[str, Any]:
-    """Convert the keys of a mapping, such as numbers, to strings that differ."""
-    named = {str(key): value for key, value in values.items()}
-    if len(named) < len(values):
-        words = [str(key) for key in values]
+def with_string_keys(
+    values: Mapping[Any, Any] | list[tuple[Any, Any]], *, owner: str
+) -> dict[str, Any]:
+    """Convert the keys of a mapping or of its items, such as numbers, to strings that differ."""
+    items = [*values.items()] if isinstance(values, Mapping) else values
+    named = {str(key): value for key, value in items}
+    if len(named) < len(items):
+        words = [str(key) for key, _ in items]
         repeated = next(word for word in words if words.count(word) > 1)
         msg = f"{owner}: two entries are called {repeated!r}; expected names that differ"
         raise ComponentError(msg)

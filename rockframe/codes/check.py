@@ -4,7 +4,7 @@ from collections.abc import Mapping
 from typing import Any, NamedTuple, cast
 
 from rockframe.errors import ComponentError, short_repr
-from rockframe.measures.common import check_not_empty
+from rockframe.measures.common import by_label
 from rockframe.motion import GroundMotion
 from rockframe.motion.pair import motion_hint
 from rockframe.simulation.system import System, system_hint
@@ -55,14 +55,13 @@ def read_motions(value: object, owner: str) -> dict[str, GroundMotion]:
             f"{short_repr(value)}{motion_hint(value)}"
         )
         raise ComponentError(msg)
-    motions = cast("Mapping[str, GroundMotion]", several)
-    check_not_empty(motions, owner=owner)
+    motions = by_label(cast("Mapping[Any, Any]", several), owner=owner)
     for label, motion in motions.items():
-        if not isinstance(cast("Any", motion), GroundMotion):
+        if not isinstance(motion, GroundMotion):
             found = f"{short_repr(motion)}{motion_hint(motion)}"
             msg = f"{owner}: {label!r} needs a GroundMotion, got {found}"
             raise ComponentError(msg)
-    return {str(label): motion for label, motion in motions.items()}
+    return motions
 
 
 class PeakResponse(NamedTuple):

@@ -13,7 +13,15 @@ import xarray as xr
 from rockframe.errors import ComponentError, UnitsError, short_repr
 from rockframe.signals.arrays import Array
 from rockframe.system.bodies import OverturningAngles
-from rockframe.units import ANGLE, TIME, Measure, angle_words, check_attached_unit, to_si
+from rockframe.units import (
+    ANGLE,
+    TIME,
+    Measure,
+    angle_words,
+    attached_unit,
+    check_attached_unit,
+    to_si,
+)
 
 OWNER: Final = "fit_free_decay"
 _HISTORY: Final = (
@@ -151,9 +159,7 @@ def _read_array(value: object, measure: Measure, name: str) -> Array:
     unit: object = None
     values: object = value
     if isinstance(value, xr.DataArray):
-        values, unit = value.to_numpy(), value.attrs.get("units")
-        if unit is None and isinstance(value.data, pint.Quantity):
-            values, unit = value.data.magnitude, str(value.data.units)
+        values, unit = value.to_numpy(), attached_unit(value)
     elif isinstance(value, pint.Quantity):
         quantity = cast("Any", value)
         values, unit = quantity.magnitude, str(quantity.units)

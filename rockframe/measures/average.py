@@ -6,15 +6,18 @@ from typing import Any, Final, cast
 import numpy as np
 import xarray as xr
 
+from rockframe.arguments import checked_choice
 from rockframe.errors import ComponentError
 from rockframe.measures.directions import rotated_spectrum
 from rockframe.measures.response import checked_periods, response_spectrum
 from rockframe.motion import GroundMotion
 from rockframe.motion.pair import HorizontalPair
 from rockframe.motion.quantities import ArrayLike
+from rockframe.motion.value import GroundComponent
 from rockframe.results.schema import build_dataset
+from rockframe.signals.spectra import DAMPING_RATIO
 from rockframe.suggestions import with_hints
-from rockframe.units import PERIOD, QuantityLike, RatioLike
+from rockframe.units import PERIOD, QuantityLike, RatioLike, to_ratio
 
 _OWNER: Final = "average_spectral_acceleration"
 _REFERENCES: Final = "Eads et al. (2015), Earthquake Engng. Struct. Dyn. 44, 2057-2073"
@@ -44,7 +47,7 @@ def average_spectral_acceleration(
     damping_ratio : float, optional
         Damping ratio of the oscillators [1].
     component : {"horizontal", "vertical"}, optional
-        Component of a motion.
+        Component of a motion; pairs have their horizontal ones.
 
     Returns
     -------
@@ -76,15 +79,18 @@ def average_spectral_acceleration(
     if not (seconds > 0.0).all():
         msg = f"{_OWNER}: periods must be above zero, whose logarithm is averaged"
         raise ComponentError(msg)
+    damping = to_ratio(damping_ratio, owner=_OWNER, name="damping_ratio", condition=DAMPING_RATIO)
     with_unit = (seconds, str(PERIOD.unit))
     things = list(motion.values()) if isinstance(motion, Mapping) else [motion]
     if things and all(isinstance(thing, HorizontalPair) for thing in things):
-        spectrum = rotated_spectrum(cast("Any", motion), with_unit, damping_ratio)
+        which = checked_choice(GroundComponent, component, owner=_OWNER, name="component")
+        if which is not GroundComponent.HORIZONTAL:
+            msg = f"{_OWNER}: a pair has both horizontal components; give its motion pair.vertical"
+            raise ComponentError(msg)
+        spectrum = rotated_spectrum(cast("Any", motion), with_unit, damping)
         names = _PAIR_AVERAGES
     else:
-        spectrum = response_spectrum(
-            cast("Any", motion), with_unit, damping_ratio, component=component
-        )
+        spectrum = response_spectrum(cast("Any", motion), with_unit, damping, component=component)
         names = {"pseudo_spectral_acceleration": _OWNER}
     averages: dict[str, Any] = {}
     for name, average in names.items():
@@ -98,7 +104,7 @@ def average_spectral_acceleration(
         {
             **{name: spectrum.attrs[name] for name in copied if name in spectrum.attrs},
             "references": _REFERENCES,
-            "damping_ratio": float(spectrum["damping_ratio"][0]),
+            "damping_ratio": damping,
             "lowest_period": float(seconds[0]),
             "highest_period": float(seconds[-1]),
             "periods": int(seconds.size),

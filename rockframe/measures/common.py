@@ -9,7 +9,7 @@ from typing import Any, Final, Generic, TypeVar, cast
 import numpy as np
 import xarray as xr
 
-from rockframe.arguments import checked_choice
+from rockframe.arguments import checked_choice, with_string_keys
 from rockframe.compiled import COMPILED
 from rockframe.errors import ComponentError, short_repr
 from rockframe.motion import GroundMotion
@@ -82,18 +82,18 @@ def read_inputs(value: object, component: object, *, owner: str) -> Inputs[Signa
     if not isinstance(value, Mapping):
         signal = signal_of(value, component, owner=owner)
         return Inputs([signal], None, component_attributes(cast("GroundMotion", value), component))
-    motions = cast("Mapping[Any, Any]", value)
-    check_not_empty(motions, owner=owner)
+    motions = by_label(cast("Mapping[Any, Any]", value), owner=owner)
     signals = [signal_of(motion, component, owner=owner) for motion in motions.values()]
     attributes: dict[str, Any] = {"component": str(component), "references": REFERENCES}
-    return Inputs(signals, [str(label) for label in motions], attributes)
+    return Inputs(signals, list(motions), attributes)
 
 
-def check_not_empty(motions: Mapping[Any, Any], *, owner: str) -> None:
-    """Refuse a mapping that is empty."""
+def by_label(motions: Mapping[Any, Any], *, owner: str) -> dict[str, Any]:
+    """Return several motions by their labels as texts, which differ."""
     if not motions:
         msg = f"{owner}: found no motions; expected one at least"
         raise ComponentError(msg)
+    return with_string_keys(motions, owner=owner)
 
 
 REFERENCES: Final = (

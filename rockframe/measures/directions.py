@@ -8,7 +8,7 @@ import xarray as xr
 
 from rockframe.arguments import checked_integer
 from rockframe.errors import ComponentError, short_repr
-from rockframe.measures.common import Inputs, build_over, check_not_empty
+from rockframe.measures.common import Inputs, build_over, by_label
 from rockframe.measures.response import (
     checked_periods,
     checked_ratios,
@@ -221,8 +221,7 @@ def _pairs(value: object, *, owner: str) -> Inputs[HorizontalPair]:
         expected = "two horizontal components, rf.HorizontalPair(first, second)"
         msg = f"{owner}: pair needs {expected}, got {short_repr(value)}"
         raise ComponentError(msg)
-    pairs = cast("Mapping[Any, Any]", value)
-    check_not_empty(pairs, owner=owner)
+    pairs = by_label(cast("Mapping[Any, Any]", value), owner=owner)
     for label, pair in pairs.items():
         if not isinstance(pair, HorizontalPair):
             msg = (
@@ -230,6 +229,4 @@ def _pairs(value: object, *, owner: str) -> Inputs[HorizontalPair]:
                 "suite are suite.pairs"
             )
             raise ComponentError(msg)
-    return Inputs(
-        list(pairs.values()), [str(label) for label in pairs], {"references": _REFERENCES}
-    )
+    return Inputs(list(pairs.values()), list(pairs), {"references": _REFERENCES})

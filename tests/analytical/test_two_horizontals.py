@@ -251,6 +251,27 @@ def test_rotation_to_azimuth_includes_vertical_component():
     np.testing.assert_allclose(north.si.horizontal.samples, expected, atol=1e-12)
 
 
+def test_components_of_a_file_keep_their_names_and_directions(tmp_path):
+    file = tmp_path / "record.csv"
+    rows = [f"{0.01 * k:.2f}, {0.1 * k:.1f}, {0.2 * k:.1f}, {0.3 * k:.1f}" for k in range(5)]
+    file.write_text("\n".join(["time [s], N [g], E [g], UP [g]", *rows]))
+    pair = rf.HorizontalPair.read(file)
+    assert pair.name == "record.csv N, record.csv E"
+    assert pair.vertical.name == "record.csv UP"
+    peaks = [one.peak_acceleration.m_as("g_0") for one in (*pair.components, pair.vertical)]
+    assert peaks == pytest.approx([0.4, 0.8, 1.2], rel=1e-12)
+    assert pair.principal_axis.m_as("rad") == pytest.approx(math.atan(2.0), rel=1e-12)
+
+
+def test_vertical_spectra_of_several_pairs_need_all_vertical_components():
+    plain = rf.HorizontalPair(noise(1), noise(2))
+    whole = rf.HorizontalPair(noise(1), noise(2), noise(3))
+    for pairs, has_vertical in (((whole, plain), False), ((whole, whole), True)):
+        found = rf.rotated_spectrum(dict(enumerate(pairs)), ["0.5 s"], directions=4)
+        assert ("vertical_spectral_acceleration" in found) == has_vertical
+        assert found.motion.values.tolist() == ["0", "1"]
+
+
 def test_average_spectral_acceleration_is_geometric_mean():
     motion = noise(7)
     periods = np.linspace(0.2, 3.0, 15)

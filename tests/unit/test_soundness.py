@@ -127,3 +127,16 @@ def test_imperceptible_motion_is_still_compared():
         text, tried = caution_of("fast", 2.0 * MAX_FIXED_STEP_RESIDUAL, base=still, other=other)
         assert "adaptive steps give another course" in text
         assert len(tried) == 1
+
+
+@pytest.mark.parametrize("start", ["0.1 rad", "-0.1 rad"])
+def test_kinetic_energy_at_the_end_is_that_about_the_corner(start):
+    """Housner's block: 4/3 m R^2 about either corner."""
+    system = rf.System(rf.Block(width="1 m", height="4 m", mass="10 t"))
+    initial = rf.InitialState(rotation=start)
+    plan = plan_run(system.assembly, None, duration="0.3 s", initial=initial, outputs=None)
+    ending = compute_response(system.assembly, plan).trajectory.ending
+    rate = ending.state[1]
+    assert abs(rate) > 0.1
+    expected = 0.5 * (4.0 / 3.0) * 10e3 * (0.5**2 + 2.0**2) * rate**2
+    assert soundness._kinetic_energy(system.assembly, ending) == pytest.approx(expected, rel=1e-12)

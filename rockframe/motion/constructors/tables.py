@@ -225,6 +225,9 @@ def from_frame(
         if label is not None and not isinstance(cast("object", label), Hashable):
             msg = f"{owner}: {what} must name a column, got {short_repr(label)}"
             raise ComponentError(msg)
+        if label is not None and list(frame.columns).count(label) > 1:
+            msg = f"{owner}: {what} must name one column, and several are called {label!r}"
+            raise ComponentError(msg)
     labels = [label for label in frame.columns if label not in (time, vertical)]
     if component is None and len(labels) != 1:
         listed = ", ".join(repr(label) for label in labels[:10]) or "none"

@@ -129,7 +129,8 @@ def read_free_values(
             f"{owner}: {name} needs numbers, words or quantities in a row, got {short_repr(value)}"
         )
         raise ComponentError(msg)
-    if array.dtype.kind == "U" and not all(isinstance(item, str) for item in items):
+    # words among numbers, and truth values, which would become numbers
+    if len({(isinstance(item, str), isinstance(item, bool)) for item in items}) > 1:
         msg = f"{owner}: {name} needs values of one sort, got {short_repr(value)}"
         raise ComponentError(msg)
     if array.dtype.kind == "i":

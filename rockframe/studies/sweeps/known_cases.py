@@ -2,6 +2,7 @@
 
 import json
 from collections.abc import Iterable, Mapping
+from functools import cache
 from pathlib import Path
 from typing import Any, Final
 
@@ -69,6 +70,9 @@ class _Source:
 
     def __init__(self, study: Study, folder: Path) -> None:
         self.stored = Store.open(folder)
+        # as it was when first asked, though another job may go on with the study: cases are chosen
+        # and merged alike
+        self._has = cache(self.stored.has)
         description = self.stored.description()
         requested = json.loads(json.dumps(study.to_dict()))
         names = difference(description, requested)
@@ -110,7 +114,7 @@ class _Source:
         )
         numbers[np.any(np.array(positions) == _NOT_RUN, axis=0)] = _NOT_RUN
         for old in np.unique(numbers[numbers != _NOT_RUN] // self.stored.chunk).tolist():
-            if not self.stored.has(self.stored.chunk_at(old)):  # not yet run
+            if not self._has(self.stored.chunk_at(old)):  # not yet run
                 numbers[numbers // self.stored.chunk == old] = _NOT_RUN
         return numbers
 

@@ -77,7 +77,7 @@ def named_motions(value: object) -> dict[str, GroundMotion]:
     if isinstance(value, HorizontalPair):
         value = [value]
     if isinstance(value, Mapping):
-        named = _split_pairs(with_string_keys(cast("Mapping[Any, Any]", value), owner=OWNER))
+        named = _split_pairs(cast("Mapping[Any, Any]", value))
     elif is_iterable(value) and not isinstance(value, str):
         several = list(value)
         pairs = (
@@ -94,12 +94,12 @@ def named_motions(value: object) -> dict[str, GroundMotion]:
     return named
 
 
-def _split_pairs(named: Mapping[str, Any]) -> dict[str, Any]:
+def _split_pairs(named: Mapping[Any, Any]) -> dict[str, Any]:
     """Return motions by name; the name of a component follows that of its pair."""
-    motions: dict[str, Any] = {}
+    motions: list[tuple[Any, Any]] = []
     for name, item in named.items():
         if not isinstance(item, HorizontalPair):
-            motions[name] = item
+            motions.append((name, item))
             continue
         directions = [str(motion.metadata.get("component", "")) for motion in item.components]
         words = (
@@ -107,11 +107,11 @@ def _split_pairs(named: Mapping[str, Any]) -> dict[str, Any]:
             if all(directions) and len(set(directions)) == len(directions)
             else ["first", "second"]
         )
-        motions |= {
-            f"{name} {word}": component
+        motions += [
+            (f"{name} {word}", component)
             for word, component in zip(words, item.components, strict=True)
-        }
-    return motions
+        ]
+    return with_string_keys(motions, owner=OWNER)
 
 
 def motion_number(requested: object, names: Sequence[str], *, owner: str) -> int:

@@ -335,11 +335,12 @@ def test_runs_without_a_verdict_are_not_said_to_differ_from_the_scene():
         ({"tolerance": "1 m"}, UnitsError, "tolerance needs a pure ratio"),
         ({"error": "colour"}, SchemaError, "'peak_error' or 'history_error'"),
         ({"error": "history_error"}, SchemaError, "expected one of tradeoff"),
+        ({"dataset": "found.nc"}, SchemaError, "found 'found.nc'; expected a comparison of models"),
     ],
 )
 def test_invalid_recommendation_arguments_are_refused(arguments, error, words):
     with pytest.raises(error, match=words):
-        rf.recommend(comparison_of(TIMES, ERRORS), **arguments)
+        rf.recommend(**{"dataset": comparison_of(TIMES, ERRORS), **arguments})
 
 
 @pytest.mark.parametrize(

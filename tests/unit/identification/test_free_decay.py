@@ -4,12 +4,13 @@ import math
 
 import numpy as np
 import pandas as pd
+import pint
 import pytest
 import xarray as xr
 
 import rockframe as rf
 from rockframe.errors import ComponentError, ModelWarning, UnitsError
-from rockframe.identification.measured import History, swings_of
+from rockframe.identification.measured import History, read_history, swings_of
 from rockframe.identification.prediction import release_response
 from rockframe.results.schema import SCHEMA
 from rockframe.solve.accuracy import accuracy_of
@@ -57,6 +58,15 @@ def test_measured_data_accept_equivalent_forms(fit, run):
         refit = rf.fit_free_decay(START, measured)
         np.testing.assert_allclose(refit.fitted_value, fit.fitted_value, rtol=1e-8)
         np.testing.assert_allclose(refit.measured_rotation, rotation, rtol=1e-12)
+
+
+@pytest.mark.parametrize("attributes", [{}, {"units": "rad"}])
+def test_the_unit_of_a_quantity_is_its_own(attributes):
+    """Also within a DataArray whose attribute is of another unit."""
+    degrees = pint.get_application_registry().Quantity(np.array([6.0, 5.0]), "deg")
+    times = {"time": ("time", [0.0, 0.5], {"units": "s"})}
+    found = read_history(xr.DataArray(degrees, times, "time", attrs=attributes))
+    np.testing.assert_allclose(found.rotation, np.radians([6.0, 5.0]), rtol=1e-15)
 
 
 def test_dataset_follows_schema_and_survives_netcdf_round_trip(fit, tmp_path):
@@ -139,6 +149,23 @@ def test_swings_of_a_noisy_record():
     np.testing.assert_array_equal(swings.peaks.sides, (-1.0) ** np.arange(12))
 
 
+@pytest.mark.parametrize("side", [1.0, -1.0])
+def test_swings_are_about_the_reading_at_rest(side):
+    """A decaying vibration in closed form, read with an offset."""
+    time, rate, frequency = np.arange(0.0, 10.0, 0.01), 0.4, 2.0 * math.pi
+    curve = side * 0.1 * np.exp(-rate * time) * np.cos(frequency * time)
+    found = swings_of(History(time, curve + 0.02))
+    assert found.offset == pytest.approx(0.02, abs=2e-4)
+    assert found.crossing == pytest.approx(0.25, abs=2e-3)
+    # the eleventh swing is the last above a tenth of the first, and may be incomplete
+    when = 0.5 * np.arange(1, 11) - math.atan(rate / frequency) / frequency
+    np.testing.assert_allclose(found.peaks.time[1:], when, rtol=0.0, atol=1e-3)
+    peaks = side * 0.1 * np.exp(-rate * when) * np.cos(frequency * when)
+    np.testing.assert_allclose(found.peaks.rotation[1:], 0.02 + peaks, rtol=0.0, atol=1e-4)
+    assert found.peaks.rotation[0] == side * 0.1 + 0.02
+    np.testing.assert_array_equal(found.peaks.sides, side * (-1.0) ** np.arange(1 + when.size))
+
+
 TIME = np.arange(0.0, 3.0, 0.02)
 SWING = 0.1 * np.cos(2.0 * math.pi * TIME)
 
@@ -161,6 +188,8 @@ def test_times_of_peaks_count_as_data_from_any_start():
     # six data tell three unknowns
     found = rf.fit_free_decay(START, peaks=((times + 100.0, "s"), (rotation, "rad")))
     assert found.release_time.item() == pytest.approx(100.0, abs=1e-3)
+    differences = found.measured_peak_time - found.fitted_peak_time
+    np.testing.assert_array_equal(found.peak_time_residual, differences)
     given = rf.fit_free_decay(
         START,
         peaks=((times + 100.0, "s"), (rotation, "rad")),
@@ -191,6 +220,10 @@ REFUSED = [
     ({"peaks": ([6.0, -5.0, -4.0, 3.0], "deg")}, "must alternate in sign"),
     ({"peaks": ([6.0, 5.0, 0.0], "deg")}, "none be zero"),
     ({"peaks": ([6.0, 20.0, 3.0], "deg")}, "peak 2 is 0.349066 rad"),
+    ({"peaks": ([BLOCK.overturning_angle.m, 0.1, 0.08], "rad")}, "peak 1 is .*, not below the"),
+    ({"peaks": ([], "deg")}, "peaks needs a one-dimensional array"),
+    ({"measured": history([SWING])}, "rotation needs a one-dimensional array"),
+    ({"measured": history(["a"] * len(TIME))}, "rotation needs numbers"),
     ({"peaks": PEAKS, "circumstances": "release_time"}, "without times"),
     ({"peaks": PEAKS, "circumstances": "gauge_offset"}, "without their signs"),
 ]

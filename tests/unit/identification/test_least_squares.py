@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from scipy import stats
 
-from rockframe.identification.fitting import Solution, fit_peaks, uncertainty_of
+from rockframe.identification.fitting import Solution, fit_peaks, minimize, uncertainty_of
 from rockframe.identification.measured import MeasuredPeaks
 from rockframe.identification.prediction import Unknown
 
@@ -29,6 +29,37 @@ def test_errors_are_those_of_linear_regression(count, size):
     assert uncertainty.half_width == pytest.approx(stats.t.ppf(0.95, freedom), rel=1e-10)
     scale = np.sqrt(np.diag(covariance))
     assert uncertainty.correlation == pytest.approx(covariance / np.outer(scale, scale), abs=1e-9)
+
+
+def test_unknowns_that_are_not_told_apart_have_neither_error_nor_correlation():
+    """Two unknowns have one effect, the third one of its own."""
+    jacobian = np.array([[1.0, 1.0, 0.0], [2.0, 2.0, 0.0], [3.0, 3.0, 1.0], [1.0, 1.0, 2.0]])
+    residuals, all_true = np.array([0.1, 0.0, -0.1, 0.1]), np.ones(3, dtype=bool)
+    found = uncertainty_of(
+        Solution(np.zeros(3), jacobian, residuals, 1, 1, ~all_true, all_true, 1), 0.95
+    )
+    # by hand: the common effect (1, 2, 3, 1) takes 25/15 of the third one's square of 5
+    expected = np.sqrt(0.03 / (5.0 - 25.0 / 15.0))
+    np.testing.assert_allclose(found.standard_error, [np.nan, np.nan, expected], rtol=1e-12)
+    known = np.isfinite(found.correlation)
+    assert np.argwhere(known).tolist() == [[2, 2]]
+
+
+def test_bounds_hold_and_are_told():
+    """Unknowns beyond a bound, within bounds, and without effect; each with its own scale."""
+    unknowns = [
+        Unknown("beyond", 1.0, 3.0, 0.0, 2.0),
+        Unknown("below", 1.0, 0.2, 0.5, 2.0),
+        Unknown("within", 0.5, 0.5, 0.0, 1.0),
+        Unknown("ineffective", 0.7, 1.0),
+    ]
+    target = np.array([2.01, 0.49, 0.3])
+    found = minimize(lambda values: (values[:3] - target) * [1.0, 2.0, 3.0], unknowns)
+    np.testing.assert_allclose(found.values, [2.0, 0.5, 0.3, 0.7], rtol=1e-6)
+    assert found.at_bound.tolist() == [True, True, False, False]
+    assert found.has_effect.tolist() == [True, True, True, False]
+    derivatives = np.column_stack([np.diag([1.0, 2.0, 3.0]), np.zeros(3)])
+    np.testing.assert_allclose(found.jacobian, derivatives, rtol=0.0, atol=1e-8)
 
 
 class LinearDecay:

@@ -18,6 +18,7 @@ from rockframe.measures import (
 ALL = (intensity_measures, response_spectrum, fourier_spectrum, velocity_and_displacement)
 PULSE = rf.GroundMotion.sine_pulse("1 m/s^2", "1 Hz")
 BLOCK = rf.Block(width="1 m", height="4 m", mass="1 t")
+PAIR = rf.HorizontalPair(PULSE, PULSE.scaled(0.5))
 
 
 @pytest.mark.parametrize("function", ALL)
@@ -49,6 +50,41 @@ def test_the_vertical_component_is_measured_like_the_horizontal_one(function):
     for name in expected.data_vars:
         key = name if name in result else f"vertical_{name}"
         np.testing.assert_array_equal(result[key].values, expected[name].values)
+
+
+TWICE = {1: PULSE, "1": PULSE.scaled(2.0)}
+
+
+@pytest.mark.parametrize(
+    "measured",
+    [
+        lambda: intensity_measures(TWICE),
+        lambda: response_spectrum(TWICE),
+        lambda: rf.average_spectral_acceleration(TWICE, ["1 s"]),
+        lambda: rf.rotated_spectrum({1: PAIR, "1": PAIR}),
+        lambda: rf.measures.principal_axes({1: PAIR, "1": PAIR}),
+        lambda: rf.codes.asce_7_22(BLOCK, TWICE, spectral_acceleration=1.0),
+        lambda: rf.codes.circolare_2019(BLOCK, TWICE),
+    ],
+)
+def test_labels_that_are_one_text_raise(measured):
+    with pytest.raises(ComponentError, match="two entries are called '1'"):
+        measured()
+
+
+@pytest.mark.parametrize(
+    ("motion", "arguments", "error", "words"),
+    [
+        (PULSE, {"damping_ratio": (0.02, 0.05)}, UnitsError, "damping_ratio needs a pure ratio"),
+        (PAIR, {"damping_ratio": [0.02, 0.05]}, UnitsError, "damping_ratio needs a pure ratio"),
+        (PULSE, {"damping_ratio": 1.01}, ComponentError, "damping_ratio must be from 0 to 1"),
+        (PAIR, {"component": "vertical"}, ComponentError, "give its motion pair.vertical"),
+        (PAIR, {"component": "up"}, ComponentError, "'horizontal' or 'vertical', got 'up'"),
+    ],
+)
+def test_an_average_is_of_one_damping_ratio_and_one_component(motion, arguments, error, words):
+    with pytest.raises(error, match=words):
+        rf.average_spectral_acceleration(motion, ["0.5 s", "1 s"], **arguments)
 
 
 @pytest.mark.parametrize(

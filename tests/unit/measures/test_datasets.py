@@ -151,3 +151,18 @@ def test_standardized_absolute_velocity_leaves_out_weak_seconds():
     assert measures.cumulative_absolute_velocity.item() == pytest.approx(total)
     second = 0.01 * (samples[100:200].sum() + 0.5 * (samples[200] - samples[100]))
     assert measures.standardized_cumulative_absolute_velocity.item() == pytest.approx(second)
+
+
+@pytest.mark.parametrize(
+    ("samples", "expected"),
+    [
+        ([0.0, 0.0, 1.0, 0.0, 0.0], 0.5),  # a peak at a full second belongs to both sides
+        ([0.0, 0.0, -1.0, -1.0], 0.75),  # the last second is not whole
+        ([0.0, 0.2, 0.0, 1.0, 0.0], 0.5),  # the first second is below 0.025 g
+        ([0.0, 0.2, 0.0, 0.2, 0.0], 0.0),
+    ],
+)
+def test_standardized_absolute_velocity_by_hand(samples, expected):
+    record = rf.GroundMotion.from_arrays((samples, "m/s^2"), "0.5 s")
+    found = intensity_measures(record).standardized_cumulative_absolute_velocity
+    assert float(found) == pytest.approx(expected, rel=1e-12)

@@ -239,6 +239,11 @@ class TestFromFrame:
             GroundMotion.from_frame(FRAME.assign(t=UNEVEN), "g", "N", time="t")
         with pytest.raises(ComponentError, match="'x' is none of the columns"):
             GroundMotion.from_frame(FRAME, "g", "N", time="x")
+        for name, column in (("time", "t"), ("component", "N")):
+            twice = pd.concat([FRAME, FRAME[[column]]], axis=1)
+            words = f"{name} must name one column, and several are called '{column}'"
+            with pytest.raises(ComponentError, match=words):
+                GroundMotion.from_frame(twice, "g", "N", time="t")
         with pytest.raises(ComponentError, match="must hold finite numbers"):
             GroundMotion.from_frame(FRAME.assign(N=np.nan), "g", "N", time="t")
 

@@ -1,13 +1,17 @@
 """Signals: one function of time per component, evaluated at any time."""
 
 import copy
+import hashlib
+import math
 import pickle
+import struct
 
 import numpy as np
 import pytest
 
 from rockframe.errors import ComponentError
 from rockframe.signals import Motion, Signal
+from rockframe.signals.motion import Incline
 
 pytestmark = pytest.mark.unit
 
@@ -90,6 +94,41 @@ def test_the_vertical_component_has_its_own_pieces():
     assert Motion(RECORD, ANALYTIC).analytic
     assert not Motion(RECORD, RECORD).analytic
     assert Motion(RECORD, ANALYTIC).digest != motion.digest
+
+
+@pytest.mark.parametrize("size", [3.0, -3.0])
+def test_the_peak_is_between_samples_also_where_the_slope_is_zero_twice(size):
+    """x (x - 1/2) (x - 1) rises at both ends, with extrema of sqrt(3)/36 between them."""
+    cubic = size * np.array([0.0, 0.5, -1.5, 1.0, 0.0, 0.0])
+    signal = Signal(STEP, np.zeros(4), np.array([0.0 * cubic, cubic, 0.5 * cubic]))
+    assert signal.peak == pytest.approx(3.0 * math.sqrt(3.0) / 36.0, rel=1e-12)
+
+
+def test_motions_are_resolved_along_a_slope_until_the_end_of_the_run():
+    """The motion ends at 2 s with a jump, gravity acts on to the end."""
+    sine, cosine = math.sin(0.1), math.cos(0.1)
+    motion = Motion.of_samples(1.0, np.array([0.0, 2.0, -1.0]), np.array([0.0, 0.5, 3.0]))
+    base = Incline(0.1, 9.81).resolved(motion, duration=3.0, interval=0.1)
+    assert base.duration >= 3.0
+    times = np.array([0.5, 1.0, 1.5, 2.5, base.duration])
+    across, up = np.array([1.0, 2.0, 0.5, 0.0, 0.0]), np.array([0.25, 0.5, 1.75, 0.0, 0.0])
+    along = across * cosine + up * sine + 9.81 * sine
+    np.testing.assert_allclose(base.horizontal.at(times), along, rtol=1e-14)
+    np.testing.assert_allclose(base.vertical.at(times), up * cosine - across * sine, atol=1e-15)
+    before_its_end = base.horizontal.at(2.0 - 1e-6)
+    assert before_its_end == pytest.approx(-cosine + 3.0 * sine + 9.81 * sine, abs=1e-5)
+
+
+def test_the_digest_is_that_of_all_numbers():
+    """By hand: step, horizontal and vertical samples, and polynomials, each after its size."""
+    samples = np.array([0.0, 2.0, -1.0])
+    content = b"rockframe motion 1" + struct.pack("<dq3d", 0.5, 3, *samples)
+    missing = struct.pack("<q", -1)
+    expected = hashlib.sha256(content + 3 * missing).hexdigest()
+    assert Motion.of_samples(0.5, samples).digest == expected
+    content += struct.pack("<q3d", 3, *-samples) + 2 * missing
+    expected = hashlib.sha256(content).hexdigest()
+    assert Motion.of_samples(0.5, samples, -samples).digest == expected
 
 
 def test_both_components_are_changed_alike():

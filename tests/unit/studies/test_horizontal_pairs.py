@@ -22,6 +22,13 @@ def test_pair_is_run_as_its_two_components():
     assert rf.fragility(runs, "PGA", limits=[0.1]).trial_count.values.tolist() == [4, 4]
 
 
+@pytest.mark.parametrize("other", ["station first", "station second"])
+def test_a_component_of_a_pair_replaces_no_motion(other):
+    for motions in ({"station": PAIR, other: NORTH}, {other: NORTH, "station": PAIR}):
+        with pytest.raises(RockframeError, match=f"two entries are called '{other}'"):
+            rf.sweep(SYSTEM, motions, **OPTIONS)
+
+
 def test_components_of_a_pair_are_labelled():
     runs = rf.sweep(SYSTEM, {"station": PAIR, "pulse": rf.GroundMotion.sine_pulse()}, **OPTIONS)
     assert runs.motion.values.tolist() == ["station first", "station second", "pulse"]

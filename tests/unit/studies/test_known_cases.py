@@ -113,3 +113,22 @@ def test_incompatible_known_study_is_refused(tmp_path):
         swept(known=tmp_path / "first")
     with pytest.raises(StudyError, match="found no study"):
         swept(store=tmp_path / "more", known=tmp_path / "nothing")
+
+
+def test_cases_that_the_known_study_gets_meanwhile_are_run_too(tmp_path, monkeypatch):
+    complete = swept(heights=["2 m"], scales=[0.5, 1.0])
+    swept(heights=["2 m"], scales=[0.5, 1.0], store=tmp_path / "first")
+    late = tmp_path / "first" / "chunk-000001.arrays"
+    content, plain = late.read_bytes(), Study.job
+    late.unlink()
+
+    def job(self, cases):
+        late.write_bytes(content)  # by another job, which goes on with the known study
+        return plain(self, cases)
+
+    monkeypatch.setattr(Study, "job", job)
+    more = swept(
+        heights=["2 m"], scales=[0.5, 1.0], store=tmp_path / "more", known=tmp_path / "first",
+        chunk=8,
+    )  # fmt: skip
+    assert_identical(more, complete)

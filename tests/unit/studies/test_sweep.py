@@ -426,6 +426,7 @@ def test_missing_cases_are_refused():
         ),
         ({"scale": 1.5, "width": "0.7 m"}, "scale has no 1.5; it has 1.0, 2.0"),
         ({"scale": 1.0, "width": 0.7, "motion": 1}, "there is no motion 1; expected a name"),
+        ({"scale": 1.0, "width": 0.7, "motion": [0]}, r"there is no motion \[0\]; expected a name"),
     ):
         with pytest.raises(StudyError, match=words):
             rf.case(runs, **labels)

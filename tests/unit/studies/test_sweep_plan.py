@@ -335,6 +335,7 @@ REFUSED = [
     (lambda width: None, PULSE, {"height": ["1 m"]}, ["do not fit the arguments of <lambda>"]),
     (lambda width: None, PULSE, {"width": ["1 K"]}, ["width has the unit 'K'"]),
     (lambda width: None, PULSE, {"width": [1.0, "a"]}, ["width needs values of one sort"]),
+    (lambda width: None, PULSE, {"width": [True, 2]}, ["width needs values of one sort"]),
 ]  # fmt: skip
 
 

@@ -262,6 +262,26 @@ def test_a_write_that_fails_halfway_leaves_nothing(tmp_path, monkeypatch):
     assert list(tmp_path.iterdir()) == [path]
 
 
+@pytest.mark.parametrize("links", [True, False])
+def test_a_file_that_is_there_is_kept(tmp_path, monkeypatch, links):
+    """Of several jobs that make a study at once the first is taken, also without hard links."""
+
+    def refused(*_):
+        raise PermissionError
+
+    if not links:
+        monkeypatch.setattr(store.Path, "hardlink_to", refused)
+    file = tmp_path / "study.json"
+    for content, replace, expected in (
+        (b"1", False, b"1"),
+        (b"2", False, b"1"),
+        (b"3", True, b"3"),
+    ):
+        write_atomically(file, content, replace=replace)
+        assert file.read_bytes() == expected
+        assert [*tmp_path.iterdir()] == [file]
+
+
 def test_arrays_come_back_as_they_were(tmp_path):
     path = tmp_path / "one.arrays"
     arrays = {
