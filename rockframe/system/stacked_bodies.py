@@ -275,15 +275,18 @@ class StackedBodies(Setting):
     ) -> list[Statics | None]:
         """Return the equilibria with the highest body held at rotations, with uplift of joints.
 
-        `closed` are those with all rigid bases in full contact. Beyond the rotation at which a
-        corner first lifts from a rigid base, all bodies above rotate about the other corner.
+        `closed` are those with all rigid bases in full contact. To either side of rest, beyond the
+        rotation at which a corner first lifts from a rigid base, all bodies above rotate about the
+        other corner.
         """
         states: list[Statics | None] = [None] * len(rotations)
+        rest = self.rest_rotation
+        turned = [rotation - rest for rotation in rotations]
         for side in (1, -1):
-            before, lifted, path = 0.0, None, None
+            before, lifted, path = rest, None, None
             joints = [_Joint(self, k, side) for k, rigid in enumerate(self.rigid) if rigid]
-            here = [i for i, angle in enumerate(rotations) if math.copysign(1.0, angle) == side]
-            for i in sorted(here, key=lambda i: abs(rotations[i])):
+            here = [i for i, angle in enumerate(turned) if math.copysign(1.0, angle) == side]
+            for i in sorted(here, key=lambda i: abs(turned[i])):
                 if lifted is None:
                     lifted = _first_uplift(joints, before, rotations[i])
                     if lifted is None:
@@ -328,7 +331,7 @@ def _first_uplift(joints: "Sequence[_Joint]", before: float, rotation: float) ->
         at = before
         if joint.uplift_margin(before) > 0.0:
             at = cast("float", brentq(joint.uplift_margin, before, rotation))
-        if first is None or abs(at) < abs(first.rotation):
+        if first is None or joint.side * (at - first.rotation) < 0.0:
             first = _Uplift(joint.bodies, at, joint.equilibrium_at_uplift(at))
     return first
 
