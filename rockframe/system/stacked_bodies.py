@@ -2,7 +2,7 @@
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import NamedTuple, cast
 
@@ -290,14 +290,21 @@ class StackedBodies(Setting):
                 if lifted is None:
                     lifted = _first_uplift(joints, before, rotations[i])
                     if lifted is None:
-                        before, states[i] = rotations[i], closed[i]
+                        before, states[i] = rotations[i], self._joined_highest(closed[i])
                         continue
                     path = EquilibriumPath(lifted.rotation, lifted.equilibrium)
                 if path is None:
                     break
                 path, poses = lifted.bodies.chain.held_at(path, rotations[i])
-                states[i] = None if poses is None else lifted.bodies.statics_of(poses)
+                state = None if poses is None else lifted.bodies.statics_of(poses)
+                states[i] = state if lifted.base == 0 else self._joined_highest(state)
         return states
+
+    def _joined_highest(self, state: Statics | None) -> Statics | None:
+        """Return a state in which the base of the highest body is closed if it is rigid."""
+        if state is None or not self.rigid[0]:
+            return state
+        return replace(state, contact_state="full")
 
 
 def combined_body(
@@ -315,6 +322,7 @@ def combined_body(
 class _Uplift(NamedTuple):
     """The state at which a corner lifts from a rigid base."""
 
+    base: int  # number of the base
     bodies: StandingBodies  # all bodies, those above the base on its other corner
     rotation: float  # rotation of the highest body [rad]
     equilibrium: ChainEquilibrium  # of the bodies
@@ -332,7 +340,7 @@ def _first_uplift(joints: "Sequence[_Joint]", before: float, rotation: float) ->
         if joint.uplift_margin(before) > 0.0:
             at = cast("float", brentq(joint.uplift_margin, before, rotation))
         if first is None or joint.side * (at - first.rotation) < 0.0:
-            first = _Uplift(joint.bodies, at, joint.equilibrium_at_uplift(at))
+            first = _Uplift(joint.base, joint.bodies, at, joint.equilibrium_at_uplift(at))
     return first
 
 
@@ -349,7 +357,7 @@ class _Joint:
             first, last = groups[self.index][0], groups[self.index][-1]
             groups[self.index : self.index + 1] = [range(first, k + 1), range(k + 1, last + 1)]
         self.bodies = setting.statics_of_groups(groups, k, side)
-        self.side = side
+        self.base, self.side = k, side
 
     def rotations(self, poses: Sequence[Pose]) -> list[float]:
         """Return the rotations of all bodies on their bases; 0 for the body on this base."""

@@ -71,6 +71,18 @@ def test_joint_of_leaning_stack_lifts_to_either_side_of_rest(lean):
     assert abs(closed) < 1e-9 * 1e3 * GRAVITY
 
 
+@pytest.mark.parametrize("base", [PADS, SOIL])
+def test_held_contact_is_that_of_highest_body_on_its_joint(base):
+    """A flat body on a tall block, which leaves its base first: the joint stays closed."""
+    low = rf.Block(width="0.8 m", height="4 m", mass="1 t")
+    flat = rf.Block(width="0.8 m", height="0.4 m", mass="8 t")
+    angles = np.array([-0.07, -0.02, 0.0, 0.02, 0.07])
+    state = held(rf.Stack(flat, low, interfaces=[JOINT]), base, angles=angles)
+    assert (state.held_contact_state == 0).all()
+    bare = held(flat.replace(height="4.4 m", mass="9 t"), base, angles=angles)
+    assert set(bare.held_contact_state.values) == {0, 1, 2}
+
+
 def test_body_below_carries_weight_at_bearing_corner():
     (moment,) = np.unique(held(*SCENES["statue on a block on pads"]).base_moment.values.round(6))
     # the block with a mass of 1 t at its upper right corner of the joint
