@@ -393,11 +393,20 @@ def without_gravity(shown: Mapping[str, AnyArray], slope: Incline) -> dict[str, 
 def _carrier_displacement(model: ContactModel, run: Trajectory) -> Array | float:
     """Return what a lower body adds to the mass-weighted displacement in the work of gravity."""
     from rockframe.dynamics.cascade.system import Cascade
+    from rockframe.dynamics.chain.on_cap import OnCap
+    from rockframe.dynamics.chain.rows import MASS
     from rockframe.dynamics.coupled.system import Coupled
     from rockframe.dynamics.stacked import LOWER
 
     system = model.system
-    if not isinstance(system, Cascade | Coupled):
+    if isinstance(system, Cascade):
+        # both stages have their own body, and the displacement is the sum of theirs
+        ratio = system.mass_ratio - 1.0
+    elif isinstance(system, Coupled):
+        ratio = system.cap_mass
+    elif isinstance(system, OnCap):
+        ratio = system.row_value(LOWER, MASS)
+    else:
         return 0.0
     memory, rows = memory_at_outputs(run)
     places = np.array(
@@ -406,6 +415,4 @@ def _carrier_displacement(model: ContactModel, run: Trajectory) -> Array | float
             for mode, state, row in zip(run.mode, run.state, rows, strict=True)
         ]
     )
-    # in a cascade both stages have their own body, and the displacement is the sum of theirs
-    ratio = system.mass_ratio - 1.0 if isinstance(system, Cascade) else system.cap_mass
     return ratio * places

@@ -2,7 +2,7 @@
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import NamedTuple, cast
 
@@ -275,26 +275,36 @@ class StackedBodies(Setting):
     ) -> list[Statics | None]:
         """Return the equilibria with the highest body held at rotations, with uplift of joints.
 
-        `closed` are those with all rigid bases in full contact. Beyond the rotation at which a
-        corner first lifts from a rigid base, all bodies above rotate about the other corner.
+        `closed` are those with all rigid bases in full contact. To either side of rest, beyond the
+        rotation at which a corner first lifts from a rigid base, all bodies above rotate about the
+        other corner.
         """
         states: list[Statics | None] = [None] * len(rotations)
+        rest = self.rest_rotation
+        turned = [rotation - rest for rotation in rotations]
         for side in (1, -1):
-            before, lifted, path = 0.0, None, None
+            before, lifted, path = rest, None, None
             joints = [_Joint(self, k, side) for k, rigid in enumerate(self.rigid) if rigid]
-            here = [i for i, angle in enumerate(rotations) if math.copysign(1.0, angle) == side]
-            for i in sorted(here, key=lambda i: abs(rotations[i])):
+            here = [i for i, angle in enumerate(turned) if math.copysign(1.0, angle) == side]
+            for i in sorted(here, key=lambda i: abs(turned[i])):
                 if lifted is None:
                     lifted = _first_uplift(joints, before, rotations[i])
                     if lifted is None:
-                        before, states[i] = rotations[i], closed[i]
+                        before, states[i] = rotations[i], self._joined_highest(closed[i])
                         continue
                     path = EquilibriumPath(lifted.rotation, lifted.equilibrium)
                 if path is None:
                     break
                 path, poses = lifted.bodies.chain.held_at(path, rotations[i])
-                states[i] = None if poses is None else lifted.bodies.statics_of(poses)
+                state = None if poses is None else lifted.bodies.statics_of(poses)
+                states[i] = state if lifted.base == 0 else self._joined_highest(state)
         return states
+
+    def _joined_highest(self, state: Statics | None) -> Statics | None:
+        """Return a state in which the base of the highest body is closed if it is rigid."""
+        if state is None or not self.rigid[0]:
+            return state
+        return replace(state, contact_state="full")
 
 
 def combined_body(
@@ -312,6 +322,7 @@ def combined_body(
 class _Uplift(NamedTuple):
     """The state at which a corner lifts from a rigid base."""
 
+    base: int  # number of the base
     bodies: StandingBodies  # all bodies, those above the base on its other corner
     rotation: float  # rotation of the highest body [rad]
     equilibrium: ChainEquilibrium  # of the bodies
@@ -328,8 +339,8 @@ def _first_uplift(joints: "Sequence[_Joint]", before: float, rotation: float) ->
         at = before
         if joint.uplift_margin(before) > 0.0:
             at = cast("float", brentq(joint.uplift_margin, before, rotation))
-        if first is None or abs(at) < abs(first.rotation):
-            first = _Uplift(joint.bodies, at, joint.equilibrium_at_uplift(at))
+        if first is None or joint.side * (at - first.rotation) < 0.0:
+            first = _Uplift(joint.base, joint.bodies, at, joint.equilibrium_at_uplift(at))
     return first
 
 
@@ -346,7 +357,7 @@ class _Joint:
             first, last = groups[self.index][0], groups[self.index][-1]
             groups[self.index : self.index + 1] = [range(first, k + 1), range(k + 1, last + 1)]
         self.bodies = setting.statics_of_groups(groups, k, side)
-        self.side = side
+        self.base, self.side = k, side
 
     def rotations(self, poses: Sequence[Pose]) -> list[float]:
         """Return the rotations of all bodies on their bases; 0 for the body on this base."""

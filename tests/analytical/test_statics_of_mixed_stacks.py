@@ -53,6 +53,36 @@ def test_restoring_moment_is_continuous_at_lift_off(name):
     np.testing.assert_allclose(opposite.base_moment, -state.base_moment, rtol=1e-9)
 
 
+@pytest.mark.parametrize("lean", [0.2, -0.2])
+def test_joint_of_leaning_stack_lifts_to_either_side_of_rest(lean):
+    """Between upright and rest too, the couple is at most that which lifts a corner."""
+    low = BLOCK.replace(centre_of_mass=("2 m", f"{lean} m"))
+    soft = SOIL.replace(stiffness="8 MPa")
+    parts = rf.Stack(STATUE, low, interfaces=[JOINT]), soft
+    rest = rf.System(*parts).equilibrium().rest_rotation.item()
+    assert rest * lean > 0.0
+    assert abs(rest) > 0.01
+    angles = np.sign(lean) * np.array([-0.02, -1e-9, 0.0, 1e-9, 0.004])
+    state = held(*parts, angles=angles)
+    lifts = -np.sign(lean) * statue_alone(-np.sign(lean) * angles)
+    np.testing.assert_allclose(state.restoring_moment, lifts, rtol=1e-12)
+    assert (state.held_contact_state == (1 if lean > 0.0 else 2)).all()
+    (closed,) = held(*parts, angles=np.array([rest])).restoring_moment
+    assert abs(closed) < 1e-9 * 1e3 * GRAVITY
+
+
+@pytest.mark.parametrize("base", [PADS, SOIL])
+def test_held_contact_is_that_of_highest_body_on_its_joint(base):
+    """A flat body on a tall block, which leaves its base first: the joint stays closed."""
+    low = rf.Block(width="0.8 m", height="4 m", mass="1 t")
+    flat = rf.Block(width="0.8 m", height="0.4 m", mass="8 t")
+    angles = np.array([-0.07, -0.02, 0.0, 0.02, 0.07])
+    state = held(rf.Stack(flat, low, interfaces=[JOINT]), base, angles=angles)
+    assert (state.held_contact_state == 0).all()
+    bare = held(flat.replace(height="4.4 m", mass="9 t"), base, angles=angles)
+    assert set(bare.held_contact_state.values) == {0, 1, 2}
+
+
 def test_body_below_carries_weight_at_bearing_corner():
     (moment,) = np.unique(held(*SCENES["statue on a block on pads"]).base_moment.values.round(6))
     # the block with a mass of 1 t at its upper right corner of the joint

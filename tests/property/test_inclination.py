@@ -25,6 +25,8 @@ SCENES = {
     "one body": ((CAP, SOIL), {}),
     "coupled": ((PADS, CAP, SOIL), {}),
     "cascade": ((PADS, CAP, SOIL), {"coupling": "cascade"}),
+    # stiff friction: the block does not slide
+    "coupled, with friction": ((PADS.replace(friction=2.0), CAP, SOIL), {}),
 }
 RECORD = rf.GroundMotion.sine_pulse("-3.2 m/s^2", "1.6 Hz").with_vertical(
     rf.GroundMotion.sine_pulse("2 m/s^2", "1.6 Hz")
