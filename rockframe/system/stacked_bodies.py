@@ -281,12 +281,12 @@ class StackedBodies(Setting):
         """
         states: list[Statics | None] = [None] * len(rotations)
         rest = self.rest_rotation
-        turned = [rotation - rest for rotation in rotations]
+        from_rest = [rotation - rest for rotation in rotations]
         for side in (1, -1):
             before, lifted, path = rest, None, None
             joints = [_Joint(self, k, side) for k, rigid in enumerate(self.rigid) if rigid]
-            here = [i for i, angle in enumerate(turned) if math.copysign(1.0, angle) == side]
-            for i in sorted(here, key=lambda i: abs(turned[i])):
+            here = [i for i, angle in enumerate(from_rest) if math.copysign(1.0, angle) == side]
+            for i in sorted(here, key=lambda i: abs(from_rest[i])):
                 if lifted is None:
                     lifted = _first_uplift(joints, before, rotations[i])
                     if lifted is None:
