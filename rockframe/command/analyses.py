@@ -248,6 +248,7 @@ def execute_fragility(arguments: argparse.Namespace, answer: Answer) -> int:
     study = None if known else _scene_and_motions(arguments)
     read = [arguments.scene, *arguments.records] if study is None else study.files
     outputs = Outputs(arguments, read, answer, output=_FRAGILITY_KIND, picture=PICTURE_KIND)
+    fitted = _typed_intensity(arguments, fragility)
     if study is None:
         runs = _runs_of_study(arguments)
     else:
@@ -259,7 +260,7 @@ def execute_fragility(arguments: argparse.Namespace, answer: Answer) -> int:
         except StudyError as problem:
             raise study.at_lines(problem) from problem
     try:
-        dataset = fragility(runs, **_typed_intensity(arguments, fragility))
+        dataset = fragility(runs, **fitted)
     except StudyError as problem:
         if not known or NOT_GIVEN not in str(problem):
             raise
