@@ -9,7 +9,7 @@ from typing import Any, Final, cast
 import numpy as np
 import xarray as xr
 
-from rockframe.arguments import checked_dataset, checked_list
+from rockframe.arguments import checked_dataset, checked_list, json_attribute
 from rockframe.errors import ComponentError, SchemaError, did_you_mean, short_repr
 from rockframe.results.joining import SWEEP_ATTRIBUTES
 from rockframe.results.outcome import check_no_means, overturns
@@ -150,8 +150,12 @@ def states_json(states: Sequence[LimitState]) -> str:
 def states_of(analysis: xr.Dataset) -> tuple[LimitState, ...]:
     """Return the limit states that a dynamic analysis, or a part of it, still has."""
     names = np.atleast_1d(analysis["limit_state"].to_numpy()).tolist()
-    every = [LimitState(*row) for row in json.loads(analysis.attrs[LIMITS_ATTRIBUTE])]
-    return tuple(state for state in every if state.name in names)
+
+    def read(rows: Iterable[Any]) -> tuple[LimitState, ...]:
+        every = {(state := LimitState(*row)).name: state for row in rows}
+        return tuple(every[name] for name in every | dict.fromkeys(names) if name in names)
+
+    return json_attribute(analysis, LIMITS_ATTRIBUTE, read, owner="fragility")
 
 
 def check_runs(value: object, *, owner: str) -> xr.Dataset:
