@@ -37,6 +37,8 @@ _PEAKS_UP_TO_OVERTURNING: Final = {
 }
 """Scalars that describe a run only up to the overturning angle."""
 _NEEDED_VARIABLES: Final = ("status", "peak_relative_rotation", "first_uplift_time", "overturned")
+_ROUNDING: Final = 1e-12
+"""Relative difference up to which two limits are one, given in different units."""
 
 
 @dataclass(frozen=True)
@@ -75,7 +77,14 @@ def limit_states(
             state = LimitState(0.0 if limit == UPLIFT else 1.0)
         else:
             state = LimitState(_rotation_limit(limit, owner, name))
-        states.setdefault(state.name, state)
+        known = states.setdefault(state.name, state)
+        both = (known.rotation, known.value), (state.rotation, state.value)
+        if not np.allclose(*both, rtol=_ROUNDING, atol=0.0, equal_nan=True):
+            msg = (
+                f"{owner}: two limit states are called {state.name!r}; expected values that differ "
+                "in their first six digits"
+            )
+            raise ComponentError(msg)
     states.pop(OVERTURNING, None)
     return (*states.values(), LimitState(1.0))
 
