@@ -45,6 +45,7 @@ from rockframe.command.typed_calls import parse_value
 from rockframe.errors import ComponentError, FileError, StudyError
 from rockframe.motion import GroundMotion
 from rockframe.motion.description import CONSTRUCTORS
+from rockframe.motion.display import motion_words
 from rockframe.plot._checks import figure_function_name
 from rockframe.reports.project import PROJECT_ATTRIBUTE
 from rockframe.results.schema import SCHEMA
@@ -53,7 +54,6 @@ from rockframe.results.variables.analyses import FragilityStatus
 from rockframe.results.variables.runs import RunStatus
 from rockframe.results.variables.variable import flag_words
 from rockframe.shared_arguments import suggestion
-from rockframe.simulation.provenance import motion_words
 from rockframe.studies import (
     critical_scale,
     fragility,

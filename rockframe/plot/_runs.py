@@ -8,11 +8,11 @@ import numpy as np
 import xarray as xr
 
 from rockframe.errors import ComponentError, short_repr
+from rockframe.motion.display import motion_words
 from rockframe.plot._axes import line_colour, line_style, unique_labels
 from rockframe.plot._checks import checked_run
 from rockframe.results.outcome import verdict_of
 from rockframe.results.variables.variable import flag_words, unit_suffix_of
-from rockframe.simulation.provenance import motion_words
 from rockframe.studies.sweeps.axes import described_axes
 from rockframe.units import TIME, QuantityLike, to_si
 from rockframe.units.display import DisplayUnits

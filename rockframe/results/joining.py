@@ -10,6 +10,7 @@ import xarray as xr
 
 from rockframe.arguments import checked_bool, checked_dataset, is_iterable, json_attribute
 from rockframe.errors import SchemaError, short_repr
+from rockframe.motion.display import motion_words
 from rockframe.results.schema import SCHEMA, history_line, without_fill_values
 from rockframe.results.variables.bodies import BODY, RESTRAINER
 from rockframe.results.variables.studies import MOTION
@@ -135,7 +136,7 @@ def concat(
     _refuse_unlike_units(rows)
     try:
         joined = xr.concat(
-            _with_motions(_with_all_labels(rows, dim), dim),
+            _with_motions(_with_all_labels(rows, dim), dim, labelled=labels is not None),
             dim=dim,
             data_vars="minimal",
             coords="different",
@@ -207,18 +208,22 @@ def _type_flags(joined: xr.Dataset) -> None:
             joined[name] = values.astype(np.float64).assign_attrs(flag_values=flags)
 
 
-def _with_motions(rows: Sequence[xr.Dataset], dim: str) -> list[xr.Dataset]:
-    """Add the names of motions to rows as a coordinate, unless they are a shared attribute."""
+def _with_motions(rows: Sequence[xr.Dataset], dim: str, *, labelled: bool) -> list[xr.Dataset]:
+    """Add the names of motions to rows as a coordinate, unless they are a shared attribute.
+
+    Labels tell runs apart that differ in the scale of a motion; without them its name must.
+    """
     lacking = [row for row in rows if MOTION not in row.variables]
-    names = {row.attrs.get(MOTION) for row in lacking}
-    named = all(isinstance(name, str) for name in names)
+    words = [motion_words(row.attrs) for row in lacking]
+    named = all(words)
+    names = {row.attrs.get(MOTION) for row in lacking} if labelled else {*words}
     alike = len(lacking) == len(rows) and len(names) == 1
     along_another = any(MOTION in row.dims for row in rows)
     if not named or (dim != MOTION and (alike or along_another)):
         return list(rows)
     return [
         row.assign_coords(
-            {MOTION: (dim, [row.attrs[MOTION]] * row.sizes[dim], SCHEMA[MOTION].attributes())}
+            {MOTION: (dim, [motion_words(row.attrs)] * row.sizes[dim], SCHEMA[MOTION].attributes())}
         )
         if MOTION not in row.variables
         else row

@@ -13,14 +13,12 @@ from rockframe.arguments import checked_mapping, json_attribute
 from rockframe.components import Component, InitialState, component_from_dict
 from rockframe.errors import RecordWarning, SchemaError, did_you_mean, short_repr, warn
 from rockframe.motion import GroundMotion
-from rockframe.motion.display import display_name
+from rockframe.motion.display import HISTORY_SEPARATOR
 from rockframe.solve.accuracy import Accuracy
 from rockframe.units import TIME, Unit, quantity_text
 
 _AFTER_END: Final = "_after_end"
 """Suffix of the names of samples of the motion that follow the histories."""
-_HISTORY_SEPARATOR: Final = "; "
-"""Separator between the steps of the history of a motion."""
 
 
 class Changes(StrEnum):
@@ -48,14 +46,8 @@ def motion_attributes(motion: GroundMotion | None) -> dict[str, str | float | in
         "motion_time_step": numbers.time_step,
         "motion_samples": int(numbers.horizontal.samples.size),
         "motion_json": json.dumps(motion.to_dict()),
-        "motion_history": _HISTORY_SEPARATOR.join(motion.history),
+        "motion_history": HISTORY_SEPARATOR.join(motion.history),
     }
-
-
-def motion_words(attributes: Mapping[str, Any]) -> str:
-    """Return the name of a result's motion, and the factor by which it was scaled."""
-    history = str(attributes.get("motion_history", "")).split(_HISTORY_SEPARATOR)
-    return display_name(str(attributes.get("motion", "")), history)
 
 
 def system_text(dataset: xr.Dataset, *, owner: str) -> str:

@@ -13,6 +13,7 @@ import xarray as xr
 from rockframe.arguments import checked_list, is_iterable, with_string_keys
 from rockframe.errors import ComponentError, short_repr
 from rockframe.motion import GroundMotion
+from rockframe.motion.display import display_name
 from rockframe.motion.pair import motion_hint
 from rockframe.results.joining import CASE_COUNT
 from rockframe.results.outcome import overturns
@@ -192,7 +193,7 @@ def _join(first: GroundMotion, second: GroundMotion | None, pause_time: float) -
     if any(motion.si.vertical is not None for motion in motions):
         components = [motion.si.vertical or _still(motion.si.horizontal) for motion in motions]
         vertical = _concatenate(components, still)
-    name = ", then ".join(motion.name for motion in motions)
+    name = ", then ".join(display_name(motion.name, motion.history) for motion in motions)
     return GroundMotion(Motion(horizontal, vertical), name=name)
 
 
