@@ -83,6 +83,11 @@ def earthquake_sequences(
     pads and on soil, a block that has come to rest retains only its slip and the yielding and
     breaking of its ties; a user-defined base may retain more.
 
+    Peaks and verdicts are those of runs that continue one another by ``initial``, to the accuracy
+    of integration; the number of impacts may be another one. How many tiny bounces precede rest follows from rounding, and times
+    are rounded otherwise after a longer time: under one of 180 pairs of stochastic motions a block
+    had 290 instead of 260 impacts, and 247 to 309 under the second motion scaled by 1 + 1e-14.
+
     Examples
     --------
     >>> import rockframe as rf
