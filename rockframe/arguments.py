@@ -1,7 +1,8 @@
 """Checks of arguments without a unit: one of a few words, a text, a whole number, or a dataset."""
 
 import json
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Generator, Iterable, Mapping
+from contextlib import contextmanager
 from enum import StrEnum
 from inspect import Parameter, Signature, signature
 from operator import index
@@ -12,6 +13,7 @@ import xarray as xr
 from rockframe.errors import ComponentError, SchemaError, did_you_mean, short_repr
 
 Option = TypeVar("Option", bound=StrEnum)
+Value = TypeVar("Value")
 
 
 def with_string_keys(
@@ -144,10 +146,41 @@ def checked_dataset(value: object, *, owner: str) -> xr.Dataset:
     raise SchemaError(msg)
 
 
-def json_attribute(dataset: xr.Dataset, name: str, *, owner: str, default: str = "{}") -> Any:
-    """Read an attribute of a dataset that is a text in JSON."""
+@contextmanager
+def damage_reported(words: str) -> Generator[None]:
+    """Raise a SchemaError that begins with these words for exceptions of damaged descriptions."""
     try:
-        return json.loads(str(dataset.attrs.get(name, default)))
-    except ValueError as problem:
-        msg = f"{owner}: the dataset's attribute {name!r} is damaged ({problem})"
+        yield
+    except (ValueError, LookupError, TypeError, AttributeError) as problem:
+        reason = f"there is no {problem}" if isinstance(problem, KeyError) else problem
+        if isinstance(problem, json.JSONDecodeError):
+            reason = f"its JSON cannot be read: {problem}"
+        msg = f"{words}: {reason}"
         raise SchemaError(msg) from problem
+
+
+def read_attribute(
+    dataset: xr.Dataset,
+    name: str,
+    read: Callable[[Any], Value],
+    *,
+    owner: str,
+    default: object = None,
+) -> Value:
+    """Read an attribute of a dataset, which users may have changed; needed without a default."""
+    with damage_reported(f"{owner}: the dataset's attribute {name!r} is damaged"):
+        return read(dataset.attrs[name] if default is None else dataset.attrs.get(name, default))
+
+
+def json_attribute(
+    dataset: xr.Dataset,
+    name: str,
+    read: Callable[[Any], Value],
+    *,
+    owner: str,
+    default: str | None = None,
+) -> Value:
+    """Read what the JSON in an attribute of a dataset describes."""
+    return read_attribute(
+        dataset, name, lambda text: read(json.loads(str(text))), owner=owner, default=default
+    )

@@ -6,6 +6,7 @@ from collections.abc import Callable, Iterable
 from contextlib import suppress
 from dataclasses import dataclass
 from pathlib import Path
+from tempfile import TemporaryFile
 from typing import Final, Self, TypeAlias
 
 from rockframe.errors import ComponentError, FileError, short_repr
@@ -65,6 +66,7 @@ def checked_path(
             f"found {short_repr(path)}; expected the path of a file that can be written ({problem})"
         )
         raise FileError(short_repr(path), words) from problem
+    fault = fault or _folder_fault(target.parent)
     if fault is not None:
         raise FileError(os.fspath(path), fault)
     return target
@@ -118,12 +120,13 @@ def _path_fault(requested: Path, target: Path, kind: FileKind) -> str | None:
     return None
 
 
-def check_not_read(path: PathLike, read: Iterable[PathLike]) -> None:
-    """Refuse to overwrite an input file, or a file in an input folder."""
-    target = Path(os.path.realpath(Path(path).expanduser()))
-    fault = _input_fault(target, read) if os.path.lexists(target) else None
-    if fault is not None:
-        raise FileError(os.fspath(path), fault)
+def _folder_fault(folder: Path) -> str | None:
+    """Say why no file can be made in a folder: permissions alone do not tell."""
+    try:
+        TemporaryFile(dir=folder).close()
+    except OSError as problem:
+        return f"it cannot be written ({problem.strerror or problem})"
+    return None
 
 
 def _input_fault(target: Path, read: Iterable[PathLike]) -> str | None:

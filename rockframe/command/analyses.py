@@ -45,6 +45,7 @@ from rockframe.command.typed_calls import parse_value
 from rockframe.errors import ComponentError, FileError, StudyError
 from rockframe.motion import GroundMotion
 from rockframe.motion.description import CONSTRUCTORS
+from rockframe.motion.display import motion_words
 from rockframe.plot._checks import figure_function_name
 from rockframe.reports.project import PROJECT_ATTRIBUTE
 from rockframe.results.schema import SCHEMA
@@ -53,7 +54,6 @@ from rockframe.results.variables.analyses import FragilityStatus
 from rockframe.results.variables.runs import RunStatus
 from rockframe.results.variables.variable import flag_words
 from rockframe.shared_arguments import suggestion
-from rockframe.simulation.provenance import motion_words
 from rockframe.studies import (
     critical_scale,
     fragility,
@@ -248,6 +248,7 @@ def execute_fragility(arguments: argparse.Namespace, answer: Answer) -> int:
     study = None if known else _scene_and_motions(arguments)
     read = [arguments.scene, *arguments.records] if study is None else study.files
     outputs = Outputs(arguments, read, answer, output=_FRAGILITY_KIND, picture=PICTURE_KIND)
+    fitted = _typed_intensity(arguments, fragility)
     if study is None:
         runs = _runs_of_study(arguments)
     else:
@@ -259,7 +260,7 @@ def execute_fragility(arguments: argparse.Namespace, answer: Answer) -> int:
         except StudyError as problem:
             raise study.at_lines(problem) from problem
     try:
-        dataset = fragility(runs, **_typed_intensity(arguments, fragility))
+        dataset = fragility(runs, **fitted)
     except StudyError as problem:
         if not known or NOT_GIVEN not in str(problem):
             raise

@@ -29,6 +29,9 @@ _INPUT, _RESULT, _FILE = "input", "result", "file"
 _HISTORY_DIMS: Final = {"time", "event", "sample_after_end"}
 """Dimensions of histories, which only the files of results hold."""
 
+_TEXT_ENDINGS: Final = ("at2", "csv", "html", "svg")
+"""Files with these endings are text, which a terminal shows."""
+
 
 class Answer:
     """The answer of a command, kept until all of its files are written."""
@@ -41,6 +44,7 @@ class Answer:
         self._numbers: dict[str, Any] = {}
         self._files: dict[str, list[str]] = {}
         self._warnings: list[str] = []
+        self._is_stdout_reserved = False
         self.data: bytes | None = None
         """Contents of a file that goes to the standard output."""
 
@@ -75,16 +79,16 @@ class Answer:
         self._lines.append((_FILE, f"{title}: {path}"))
         self._files.setdefault(title.lower(), []).append(str(path))
 
-    def set_stdout_file(self, data: bytes) -> None:
-        """Keep the one file that goes to the standard output."""
-        if self.as_json or self.data is not None:
+    def reserve_stdout(self, ending: str) -> None:
+        """Raise an error if a file with this ending cannot go to the standard output."""
+        if self.as_json or self._is_stdout_reserved:
             occupant = "the answer in JSON" if self.as_json else "another file"
             words = f"{occupant} goes to the standard output already; name a file instead of '-'"
             raise FileError(STREAM, words)
-        if is_terminal(sys.stdout) and b"\0" in data:
+        if is_terminal(sys.stdout) and ending.lower().strip(".") not in _TEXT_ENDINGS:
             words = "the standard output is a terminal, which shows no such file; name one"
             raise FileError(STREAM, words)
-        self.data = data
+        self._is_stdout_reserved = True
 
     def add_warning(self, words: str) -> None:
         """Keep a warning for JSON."""

@@ -5,11 +5,10 @@ from io import BytesIO
 from pathlib import Path
 from typing import Any, Final
 
-import xarray as xr
-
 from rockframe import plot
 from rockframe.command.answer import Answer
 from rockframe.command.arguments import RUN_OPTIONS
+from rockframe.command.files.scenes import SceneDescription
 from rockframe.command.runs import is_finished
 from rockframe.command.shared import (
     Outputs,
@@ -24,7 +23,9 @@ from rockframe.command.streams import STREAM
 from rockframe.command.typed_calls import values_by_name
 from rockframe.errors import ComponentError, FileError
 from rockframe.plot import Animation, Player, animation, player
+from rockframe.plot._animation import FILM_KIND, check_film_program
 from rockframe.plot._checks import figure_function_name
+from rockframe.plot._player import FILE_KIND as PAGE_KIND
 from rockframe.reports.page import close_figure, figure_of
 from rockframe.version import __version__
 from rockframe.writing import FileKind
@@ -87,52 +88,46 @@ def save_figure(
     outputs.write(path, PICTURE_KIND, "Figure", buffer.getvalue())
 
 
-_PAGES: Final = (".html", ".htm")
-_FILMS: Final = (".gif", ".mp4")
-
-
 def execute_animate(arguments: argparse.Namespace, answer: Answer) -> int:
     """Write a run as a page or a film."""
     check_format(arguments)
     path = arguments.output
     ending = f".{arguments.format or 'html'}" if path == STREAM else Path(path).suffix.lower()
-    if ending not in (*_PAGES, *_FILMS):
-        words = f"that of an animation ends in {' or '.join((_PAGES[0], *_FILMS))}"
-        raise FileError(path, f"the name ends in {ending!r}; {words}")
-    run = _run_of(arguments, answer)
-    outputs = Outputs(arguments, [arguments.dataset], answer)
-    options = typed_options(arguments, "window", "magnify", "title")
-    if ending in _PAGES and arguments.speed is not None:
+    is_page = ending in PAGE_KIND.suffixes
+    if is_page and arguments.speed is not None:
         msg = "--speed is for films; a page has a choice of speeds"
         raise ComponentError(msg)
+    scene = _scene_to_run(arguments)
+    kind = PAGE_KIND if is_page else FILM_KIND
+    read = [arguments.dataset] if scene is None else scene.files
+    outputs = Outputs(arguments, read, answer, output=kind)
+    check_film_program(ending, path)
+    run = read_result(arguments.dataset) if scene is None else simulate_scene(scene)
+    answer.add_result("Verdict", str(run.attrs.get("verdict", "")))
+    options = typed_options(arguments, "window", "magnify", "title")
     moving: Animation | Player = (
         player(run, **options)
-        if ending in _PAGES
+        if is_page
         else animation(run, **options, **typed_options(arguments, "speed"))
     )
     try:
         outputs.save_by(
-            path, ending, "Page" if ending in _PAGES else "Film",
+            path, kind, ending, "Page" if is_page else "Film",
             lambda place: moving.save(place, overwrite=arguments.overwrite),
         )  # fmt: skip
     finally:
         if isinstance(moving, Animation):
             moving.close()
-    return 0 if is_result(arguments.dataset) or is_finished(run) else 1
+    return 0 if scene is None or is_finished(run) else 1
 
 
-def _run_of(arguments: argparse.Namespace, answer: Answer) -> xr.Dataset:
-    """Read a run, or simulate a scene."""
-    if is_result(arguments.dataset):
-        typed = [
-            option for option in RUN_OPTIONS if getattr(arguments, option.attribute) is not None
-        ]
-        if typed:
-            words = f"this is a result, which has run; {typed[0].name} goes with a scene"
-            raise FileError(arguments.dataset, words)
-        run = read_result(arguments.dataset)
-    else:
+def _scene_to_run(arguments: argparse.Namespace) -> SceneDescription | None:
+    """Read a scene; return None where a result is named, which has run."""
+    if not is_result(arguments.dataset):
         arguments.scene = arguments.dataset
-        run = simulate_scene(scene_from(arguments))
-    answer.add_result("Verdict", str(run.attrs.get("verdict", "")))
-    return run
+        return scene_from(arguments)
+    typed = [option for option in RUN_OPTIONS if getattr(arguments, option.attribute) is not None]
+    if typed:
+        words = f"this is a result, which has run; {typed[0].name} goes with a scene"
+        raise FileError(arguments.dataset, words)
+    return None

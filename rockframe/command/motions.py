@@ -13,6 +13,7 @@ from rockframe.command.streams import STREAM
 from rockframe.errors import FileError, RockframeWarning, warn
 from rockframe.measures import intensity_measures
 from rockframe.motion import GroundMotion
+from rockframe.motion.operations.writing import AT2_KIND
 from rockframe.plot import motion as draw
 from rockframe.plot._fonts import warn_of_letters_once
 from rockframe.results.table import table
@@ -83,7 +84,7 @@ _NETCDF_KIND: Final = dataset_kind(
     "a motion or a set of motions",
     lambda dataset: "motion_sha256" in {*dataset.attrs, *dataset.variables},
 )
-_KINDS: Final = {"csv": _MOTION_TABLE_KIND, "nc": _NETCDF_KIND}
+_KINDS: Final = {"at2": AT2_KIND, "csv": _MOTION_TABLE_KIND, "nc": _NETCDF_KIND}
 _UNSAFE_CHARACTERS: Final = re.compile(r"[^\w.+-]+")
 _MAX_LISTED: Final = 8
 
@@ -96,7 +97,7 @@ def execute_convert(arguments: argparse.Namespace, answer: Answer) -> int:
     into_folder = arguments.output != STREAM and (
         target.is_dir() or target.suffix.lower() not in map(str.lower, _ENDINGS.values())
     )
-    if not into_folder and file_format in _KINDS:
+    if not into_folder:
         outputs.check(arguments.output, _KINDS[file_format])
     motions = motions_from(arguments)
     if into_folder:
@@ -180,6 +181,6 @@ def _write(
             words = "the vertical component is left out; a file ending in .nc or .csv has it"
             warn(f"{path}: {words}", RockframeWarning)
         outputs.save_by(
-            path, _ENDINGS[file_format], "Motion",
+            path, AT2_KIND, _ENDINGS[file_format], "Motion",
             lambda place: motion.to_at2(place, overwrite=arguments.overwrite),
         )  # fmt: skip

@@ -23,6 +23,7 @@ from rockframe.motion import GroundMotion
 from rockframe.reports import report
 from rockframe.reports.checks import CodeCheck
 from rockframe.reports.motions import available_motions
+from rockframe.reports.page import FILE_KIND
 from rockframe.reports.project import CHECKS, project_of_result
 from rockframe.simulation.system import System
 from rockframe.studies import case, open_study
@@ -45,16 +46,17 @@ def execute_report(arguments: argparse.Namespace, answer: Answer) -> int:
         if is_store:  # its name may contain points, or be '.' or '..'
             source = source if source.name.strip(".") else source.resolve()
             source = source.with_name(f"{source.name}.nc")
-        path = str(source.with_suffix(".html"))
+        path = arguments.output = str(source.with_suffix(".html"))
+    outputs = Outputs(arguments, [arguments.dataset], answer, output=FILE_KIND)
     records = arguments.motions
     motions = None if records is None else read_suite(records[0] if len(records) == 1 else records)
     if arguments.case is not None:
         dataset = _simulate_case(dataset, arguments, motions)
         motions = None  # a case holds its motion
-    outputs = Outputs(arguments, [arguments.dataset], answer)
     outputs.save_by(
-        path, ".html", "Report", lambda source: _write_report(dataset, source, arguments, motions)
-    )
+        path, FILE_KIND, ".html", "Report",
+        lambda source: _write_report(dataset, source, arguments, motions),
+    )  # fmt: skip
     return 0
 
 

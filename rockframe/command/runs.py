@@ -22,8 +22,8 @@ from rockframe.command.shared import (
     typed_options,
 )
 from rockframe.errors import ComponentError
+from rockframe.motion.display import display_name, motion_words
 from rockframe.results.variables.runs import RunStatus
-from rockframe.simulation.provenance import motion_words
 from rockframe.simulation.run_arguments import PROVED, Certification
 from rockframe.system.setting import describe
 
@@ -105,8 +105,9 @@ def execute_describe(arguments: argparse.Namespace, answer: Answer) -> int:
     described = describe(assembly.setting, assembly.parts, tables)
     motion = "none"
     if scene.motion is not None:
+        name = display_name(scene.motion.name, scene.motion.history)
         vertical = "" if scene.motion.si.vertical is None else ", with vertical"
-        motion = f"{scene.motion.name}: {motion_summary(scene.motion)}{vertical}"
+        motion = f"{name}: {motion_summary(scene.motion)}{vertical}"
     answer.add_text(
         f"{described}\nMotion:\n  {motion}",
         model=assembly.setting.model,

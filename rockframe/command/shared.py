@@ -37,7 +37,7 @@ from rockframe.studies.intensities import PERIOD_ATTRIBUTE, measure_words
 from rockframe.studies.sweeps.chunk import SCREEN
 from rockframe.suites import MotionSuite, read_suite
 from rockframe.units import Unit
-from rockframe.writing import Content, FileKind, check_not_read, checked_path, write_file
+from rockframe.writing import Content, FileKind, checked_path, write_file
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -241,13 +241,16 @@ class Outputs:
     ) -> None:
         self._write_options: dict[str, Any] = {"overwrite": arguments.overwrite, "read": list(read)}
         self._answer = answer
+        self._stream_format: str | None = getattr(arguments, "format", None)
         self._named_files = {name: (getattr(arguments, name), kind) for name, kind in kinds.items()}
         for path, kind in self._named_files.values():
             self.check(path, kind)
 
     def check(self, path: str | Path | None, kind: FileKind) -> None:
         """Raise if a file must not be written."""
-        if path is not None and str(path) != STREAM:
+        if path is not None and str(path) == STREAM:
+            self._answer.reserve_stdout(self._stream_format or kind.suffixes[0])
+        elif path is not None:
             checked_path(path, kind, **self._write_options)
 
     def write(self, path: str | Path | None, kind: FileKind, title: str, content: Content) -> None:
@@ -255,7 +258,7 @@ class Outputs:
         if path is None:
             return
         if str(path) == STREAM:
-            self._answer.set_stdout_file(_content_bytes(content, kind.suffixes[0]))
+            self._answer.data = _content_bytes(content, kind.suffixes[0])
             return
         write_file(path, kind, content, **self._write_options)
         self._answer.add_file(title, path)
@@ -265,14 +268,18 @@ class Outputs:
         self.write(*self._named_files["output"], "Results", dataset.to_netcdf)
 
     def save_by(
-        self, path: str | Path, ending: str, title: str, save: Callable[[Path], object]
+        self,
+        path: str | Path,
+        kind: FileKind,
+        ending: str,
+        title: str,
+        save: Callable[[Path], object],
     ) -> None:
         """Write by a function of a path to a file, or to the standard output; report the file."""
         if str(path) == STREAM:
-            self._answer.set_stdout_file(_content_bytes(save, ending))
+            self._answer.data = _content_bytes(save, ending)
             return
-        if Path(path).suffix.lower() == ending.lower():  # `save` refuses other endings
-            check_not_read(path, self._write_options["read"])
+        checked_path(path, kind, **self._write_options)
         save(Path(path))
         self._answer.add_file(title, path)
 

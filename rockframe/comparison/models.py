@@ -91,8 +91,8 @@ def model_ladder(system: System) -> dict[str, System]:
     present = system.parts.signature
     rows = _MODELS[:1] if system.parts.own else _MODELS
     slides = system.setting.slides and not system.parts.own
-    # held against sliding, a squat body would not rock
-    rocks = not slides or "stack" in present or not squat_body_warnings(system.parts.block_si, "")
+    block = system.parts.block
+    squat = block is not None and "stack" not in present and bool(squat_body_warnings(block.si, ""))
     # a wall prevents the sliding of the model without it
     prevents_sliding = slides or "wall" in present
     all_parts, sliding = components, Sliding.CHECKED if prevents_sliding else system.sliding
@@ -121,6 +121,8 @@ def model_ladder(system: System) -> dict[str, System]:
                 parts = {**{slot: components[slot] for slot in slots}, **bases}
                 if "ground" in components:
                     parts["ground"] = components["ground"]
+                # on rigid ground, or held against sliding, a squat body would not rock
+                rocks = not squat or not (slides or {"pads", "soil"}.isdisjoint(parts))
                 words = name.format(**_base_names(bases))
                 for rotation in dict.fromkeys((Rotation.SMALL, system.rotation)):
                     last = f"{words}, small rotations" if rotation is Rotation.SMALL else words

@@ -15,6 +15,7 @@ from rockframe.arguments import checked_choice, checked_integer
 from rockframe.components import Block, FrameEquivalent, RigidGround, TwoSpringSupport, WinklerSoil
 from rockframe.errors import ComponentError, short_repr
 from rockframe.motion import GroundMotion
+from rockframe.motion.display import display_name
 from rockframe.simulation.system import System
 from rockframe.suggestions import with_hints
 from rockframe.system.options import Restraint, Rotation
@@ -244,8 +245,9 @@ def _docstring(
 ) -> str:
     """Return the docstring of the file."""
     elsewhere = base.note is not _GROUND_NOTE and system.restraint is not Restraint.CENTRE
+    name = display_name(motion.name, motion.history)
     rows = [
-        f"{_SIGNATURE}{__version__}: {system.setting.model} under {motion.name}, in OpenSees.",
+        f"{_SIGNATURE}{__version__}: {system.setting.model} under {name}, in OpenSees.",
         "Run it with numpy and openseespy installed. It writes both histories of the rotation "
         "to a CSV file of the same name, and prints both peaks.",
         base.note,

@@ -11,6 +11,8 @@ from rockframe.constants import STANDARD_GRAVITY
 from rockframe.notebook import html_summary, sparkline
 from rockframe.signals import Motion
 
+HISTORY_SEPARATOR: Final = "; "
+"""Separator between the steps of the history of a motion."""
 _SCALED_STEP: Final = re.compile(r"scaled by (\S+)(?: to .*)?")
 _PROCESSING_WORDS: Final = {
     "window from ": "cut",
@@ -35,6 +37,12 @@ def display_name(name: str, history: Iterable[str]) -> str:
     factor = math.prod(float(match[1]) for match in factors if match is not None)
     named = ", ".join([name, *dict.fromkeys(filter(None, map(_processing_word, steps)))])
     return named if factor == 1.0 else f"{factor:.6g} times {named}"
+
+
+def motion_words(attributes: Mapping[Any, Any]) -> str:
+    """Return the name of a result's motion, and the factor by which it was scaled."""
+    history = str(attributes.get("motion_history", "")).split(HISTORY_SEPARATOR)
+    return display_name(str(attributes.get("motion", "")), history)
 
 
 def _processing_word(step: str) -> str:

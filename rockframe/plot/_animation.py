@@ -36,9 +36,18 @@ _STAMP: Final = f"{_SIGNATURE}{__version__}".encode()
 _COMMENT: Final = b"\x21\xfe%c%b\x00" % (len(_STAMP), _STAMP)  # a block of GIF89a
 _TRAILER: Final = b"\x3b"
 """The last byte of a GIF."""
-_FILE_KIND: Final = FileKind.marked(
+FILM_KIND: Final = FileKind.marked(
     "an animation", (".gif", ".mp4", *FILE_KIND.suffixes), _SIGNATURE
 )
+
+
+def check_film_program(ending: str, path: str | Path) -> None:
+    """Raise an error if the program that writes films with this ending is missing."""
+    from matplotlib.animation import FFMpegWriter
+
+    if ending == ".mp4" and not FFMpegWriter.isAvailable():
+        reason = "needs the program ffmpeg, which was not found; '.gif' and '.html' do without"
+        raise FileError(str(path), reason)
 
 
 @suggests_names
@@ -123,10 +132,8 @@ class Animation:
             return self._player().save(path, overwrite=overwrite)
         pixels = read_positive(dpi, "animation", "dpi")
         # checked before the frames are drawn, which takes a while
-        checked_path(path, _FILE_KIND, overwrite=overwrite)
-        if ending == ".mp4" and not FFMpegWriter.isAvailable():
-            reason = "needs the program ffmpeg, which was not found; '.gif' and '.html' do without"
-            raise FileError(str(path), reason)
+        checked_path(path, FILM_KIND, overwrite=overwrite)
+        check_film_program(ending, path)
 
         def write(part: Path) -> None:
             if ending == ".mp4":
@@ -140,7 +147,7 @@ class Animation:
             drawn = part.read_bytes()
             part.write_bytes(drawn.removesuffix(_TRAILER) + _COMMENT + _TRAILER)
 
-        return write_file(path, _FILE_KIND, write, overwrite=overwrite)
+        return write_file(path, FILM_KIND, write, overwrite=overwrite)
 
     def to_html(self) -> str:
         """Return the page of :func:`player`.

@@ -247,7 +247,8 @@ def system_of_run(run: xr.Dataset, function: str) -> System:
         warnings.simplefilter("ignore", RockframeWarning)  # issued already by the run
         if SWEEP_ATTRIBUTE in run.attrs:
             return system_of_case(run, owner=f"rf.plot.{function}")
-        return System.from_dict(json_attribute(run, "system_json", owner=f"rf.plot.{function}"))
+        owner = f"rf.plot.{function}"
+        return json_attribute(run, "system_json", System.from_dict, owner=owner)
 
 
 def mismatch_message(function: str, value: object) -> str:

@@ -14,6 +14,7 @@ import numpy as np
 import xarray as xr
 
 from rockframe.arguments import checked_text
+from rockframe.motion.display import motion_words
 from rockframe.plot._artists import CONTACT_COLOUR, SOIL_COLOUR, Layout
 from rockframe.plot._axes import BLUE, GREEN, ORANGE, VERMILLION, figure_units
 from rockframe.plot._checks import RUN, checked_run, draws
@@ -30,7 +31,6 @@ from rockframe.plot._scene import SceneHistory
 from rockframe.results.outcome import MIN_REPORTED_SLIP
 from rockframe.results.variables.variable import flag_words
 from rockframe.signals.arrays import Array
-from rockframe.simulation.provenance import motion_words
 from rockframe.suggestions import suggests_names
 from rockframe.units import ACCELERATION, ANGLE, LENGTH
 from rockframe.units.display import UnitsLike, with_superscripts

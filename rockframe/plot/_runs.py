@@ -7,13 +7,13 @@ from typing import Any, TypeAlias
 import numpy as np
 import xarray as xr
 
-from rockframe.arguments import json_attribute
 from rockframe.errors import ComponentError, short_repr
+from rockframe.motion.display import motion_words
 from rockframe.plot._axes import line_colour, line_style, unique_labels
 from rockframe.plot._checks import checked_run
 from rockframe.results.outcome import verdict_of
 from rockframe.results.variables.variable import flag_words, unit_suffix_of
-from rockframe.simulation.provenance import motion_words
+from rockframe.studies.sweeps.axes import described_axes
 from rockframe.units import TIME, QuantityLike, to_si
 from rockframe.units.display import DisplayUnits
 
@@ -103,7 +103,7 @@ def verdict_of_case(run: xr.Dataset, units: DisplayUnits) -> str:
 
 def _case_label(run: xr.Dataset) -> str:
     """Name the case of a sweep by its coordinates."""
-    axes = [str(axis["name"]) for axis in json_attribute(run, "axes_json", owner="rf.plot")]
+    axes = [axis.name for axis in described_axes(run, owner="rf.plot")]
     names = [name for name in ("motion", *axes) if name in run.coords and not run[name].dims]
     labels = [(name.replace("_", " "), run[name].item(), run[name].attrs) for name in names]
     words = [

@@ -5,6 +5,7 @@ from typing import TYPE_CHECKING, Any, Final
 import numpy as np
 import xarray as xr
 
+from rockframe.motion.display import motion_words
 from rockframe.plot._axes import GREY, grid, label_log_ticks, text_colour, unique_labels
 from rockframe.plot._checks import draws, figure_data
 from rockframe.plot._panels import Axes, AxesLike, Panels, make_sheet
@@ -89,7 +90,7 @@ def tradeoff(
     _mark_small_errors(axes[1], dataset["history_error"].to_numpy())
     keys = _legend_handles(dataset, models)
     sheet.add_legend(keys, [str(key.get_label()) for key in keys])
-    sheet.set_title(f"{dataset.attrs.get('scene', '')}: {dataset.attrs.get('motion', '')}", title)
+    sheet.set_title(f"{dataset.attrs.get('scene', '')}: {motion_words(dataset.attrs)}", title)
     return sheet.panels
 
 

@@ -9,11 +9,12 @@ import xarray as xr
 from numpy.typing import NDArray
 
 from rockframe import plot
-from rockframe.arguments import is_iterable, json_attribute
+from rockframe.arguments import is_iterable
 from rockframe.errors import ComponentError, short_repr
 from rockframe.motion import GroundMotion
 from rockframe.reports import page
 from rockframe.reports.values import column_title, format_number
+from rockframe.results.joining import described_motions
 from rockframe.results.schema import SCHEMA
 from rockframe.studies.sweeps.case import known_motions
 from rockframe.suites import MotionSuite, TargetSpectrum
@@ -76,9 +77,9 @@ def available_motions(dataset: xr.Dataset, value: object, owner: str) -> dict[st
     named = _read_motions(value, owner)
     if "motions_json" not in dataset.attrs:
         return named
-    available = known_motions(dataset, value)
-    descriptions = json_attribute(dataset, "motions_json", owner=owner)
-    digests = {str(description.get("sha256")) for description in descriptions if description}
+    available = known_motions(dataset, value, owner=owner)
+    described = described_motions(dataset, owner=owner).values()
+    digests = {str(description.get("sha256")) for description in described if description}
     digests |= {motion.sha256 for motion in available.values()}
     unknown = [label for label, motion in named.items() if motion.sha256 not in digests]
     if unknown:

@@ -57,7 +57,7 @@ class Project:
 def project_of_result(value: object, dataset: xr.Dataset, owner: str) -> Project:
     """Read a project, or that of the result if none is given."""
     if value is None:
-        value = json_attribute(dataset, PROJECT_ATTRIBUTE, owner=owner)
+        value = json_attribute(dataset, PROJECT_ATTRIBUTE, dict, owner=owner, default="{}")
     return read_project(value, owner)
 
 

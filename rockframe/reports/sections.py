@@ -16,6 +16,7 @@ from rockframe.components.parameters import Declared
 from rockframe.errors import RockframeError
 from rockframe.measures import intensity_measures
 from rockframe.motion import GroundMotion
+from rockframe.motion.display import display_name, motion_words
 from rockframe.plot._checks import RUN
 from rockframe.plot._response import SLIP_HISTORIES, has_slid, history_names
 from rockframe.reports import page
@@ -31,7 +32,6 @@ from rockframe.reports.values import extreme_rows, format_value, scalar_rows
 from rockframe.results.outcome import MIN_REPORTED_SLIP, verdict_of
 from rockframe.results.variables.runs import CERTIFICATE, PROOF
 from rockframe.simulation.certify.certificate import NEAR_WORDS
-from rockframe.simulation.provenance import motion_words
 from rockframe.simulation.run import NONE
 from rockframe.simulation.system import System
 from rockframe.studies.sweeps.labelling import slips_of_cases
@@ -163,7 +163,8 @@ def motion_section(
     )
     if comparison is not None:
         yield page.subtitle("Spectrum and target")
-        yield from spectra_section({motion.name: motion}, comparison, units)
+        name = display_name(motion.name, motion.history)
+        yield from spectra_section({name: motion}, comparison, units)
 
 
 def response_section(dataset: xr.Dataset, units: DisplayUnits) -> Iterator[str]:

@@ -9,7 +9,6 @@ import numpy as np
 import xarray as xr
 
 from rockframe import plot
-from rockframe.arguments import json_attribute
 from rockframe.errors import RockframeError, RockframeWarning, SchemaError, StudyError
 from rockframe.motion import GroundMotion
 from rockframe.plot._checks import figure_function_name
@@ -27,7 +26,7 @@ from rockframe.results.outcome import MIN_REPORTED_SLIP, overturned_from_status
 from rockframe.results.variables.analyses import FragilityStatus
 from rockframe.simulation.system import System
 from rockframe.studies import case, fragility
-from rockframe.studies.sweeps.axes import Changes
+from rockframe.studies.sweeps.axes import Changes, described_axes
 from rockframe.studies.sweeps.case import NOT_GIVEN, system_of_case
 from rockframe.studies.sweeps.labelling import cases_verdict, slips_of_cases
 from rockframe.units.display import DisplayUnits, with_superscripts
@@ -86,8 +85,8 @@ def worst_case(
 
 def varied_parameters_sentence(dataset: xr.Dataset) -> str:
     """Write which values of the scene differ among the cases; an empty text if none do."""
-    axes = json_attribute(dataset, "axes_json", owner="report", default="[]")
-    names = [axis["name"].replace("_", " ") for axis in axes if axis["changes"] != Changes.MOTION]
+    axes = described_axes(dataset, owner="report")
+    names = [axis.name.replace("_", " ") for axis in axes if axis.changes is not Changes.MOTION]
     if not names:
         return ""
     return f"Values of the scene from which the cases differ in: {', '.join(names)}."

@@ -8,8 +8,9 @@ from typing import Any, Final
 import numpy as np
 import xarray as xr
 
-from rockframe.arguments import checked_bool, checked_dataset, is_iterable
+from rockframe.arguments import checked_bool, checked_dataset, is_iterable, json_attribute
 from rockframe.errors import SchemaError, short_repr
+from rockframe.motion.display import motion_words
 from rockframe.results.schema import SCHEMA, history_line, without_fill_values
 from rockframe.results.variables.bodies import BODY, RESTRAINER
 from rockframe.results.variables.studies import MOTION
@@ -135,7 +136,7 @@ def concat(
     _refuse_unlike_units(rows)
     try:
         joined = xr.concat(
-            _with_motions(_with_all_labels(rows, dim), dim),
+            _with_motions(_with_all_labels(rows, dim), dim, labelled=labels is not None),
             dim=dim,
             data_vars="minimal",
             coords="different",
@@ -207,18 +208,22 @@ def _type_flags(joined: xr.Dataset) -> None:
             joined[name] = values.astype(np.float64).assign_attrs(flag_values=flags)
 
 
-def _with_motions(rows: Sequence[xr.Dataset], dim: str) -> list[xr.Dataset]:
-    """Add the names of motions to rows as a coordinate, unless they are a shared attribute."""
+def _with_motions(rows: Sequence[xr.Dataset], dim: str, *, labelled: bool) -> list[xr.Dataset]:
+    """Add the names of motions to rows as a coordinate, unless they are a shared attribute.
+
+    Labels tell runs apart that differ in the scale of a motion; without them its name must.
+    """
     lacking = [row for row in rows if MOTION not in row.variables]
-    names = {row.attrs.get(MOTION) for row in lacking}
-    named = all(isinstance(name, str) for name in names)
+    words = [motion_words(row.attrs) for row in lacking]
+    named = all(words)
+    names = {row.attrs.get(MOTION) for row in lacking} if labelled else {*words}
     alike = len(lacking) == len(rows) and len(names) == 1
     along_another = any(MOTION in row.dims for row in rows)
     if not named or (dim != MOTION and (alike or along_another)):
         return list(rows)
     return [
         row.assign_coords(
-            {MOTION: (dim, [row.attrs[MOTION]] * row.sizes[dim], SCHEMA[MOTION].attributes())}
+            {MOTION: (dim, [motion_words(row.attrs)] * row.sizes[dim], SCHEMA[MOTION].attributes())}
         )
         if MOTION not in row.variables
         else row
@@ -254,7 +259,9 @@ def _as_one_sweep(values: Sequence[xr.Dataset], dim: str, joined: xr.Dataset) ->
     alike = _EQUAL_ATTRIBUTES if dim == MOTION else (*_EQUAL_ATTRIBUTES, *MOTION_ATTRIBUTES)
     if any(attrs.get(name) != first.get(name) for attrs in attributes for name in alike):
         return {}
-    axes = [axis["name"] for axis in json.loads(first["axes_json"])]
+    axes = json_attribute(
+        values[0], "axes_json", lambda axes: [axis["name"] for axis in axes], owner=_OWNER
+    )
     if dim not in (MOTION, *axes) or dim not in joined.coords or not joined.indexes[dim].is_unique:
         return {}
     digests = " ".join(str(attrs["study_sha256"]) for attrs in attributes)
@@ -264,12 +271,26 @@ def _as_one_sweep(values: Sequence[xr.Dataset], dim: str, joined: xr.Dataset) ->
     }
     if dim != MOTION:
         return common
-    motions = {
-        name: json.dumps([motion for attrs in attributes for motion in json.loads(attrs[name])])
-        for name in MOTION_ATTRIBUTES
-    }
-    names = json.loads(motions["motion_names"])
-    return common | motions if len(set(names)) == len(names) else {}
+    named = [described_motions(run, owner=_OWNER) for run in values]
+    motions = {name: motion for of_run in named for name, motion in of_run.items()}
+    if len(motions) < sum(map(len, named)):
+        return {}
+    described = [list(motions), list(motions.values())]
+    return common | dict(zip(MOTION_ATTRIBUTES, map(json.dumps, described), strict=True))
+
+
+def described_motions(dataset: xr.Dataset, *, owner: str) -> dict[str, dict[str, Any] | None]:
+    """Return the descriptions of a sweep's motions by their names; None is still ground."""
+
+    def read(described: list[Any]) -> dict[str, dict[str, Any] | None]:
+        records = [each for each in described if each and not each.get("constructor")]
+        if not all({"name", "sha256"} <= set(each) for each in records):
+            msg = "a record lacks its name or sha256"
+            raise LookupError(msg)
+        return dict(zip(names, described, strict=True))
+
+    names = json_attribute(dataset, MOTION_ATTRIBUTES[0], list, owner=owner)
+    return json_attribute(dataset, MOTION_ATTRIBUTES[1], read, owner=owner)
 
 
 def _same(first: object, second: object) -> bool:

@@ -157,7 +157,7 @@ def read_choice(
 def _read_number(control: Control, text: str) -> float:
     unit = f" {control.unit}" if control.unit else ""
     try:
-        value = float(text.strip().replace(",", "."))
+        value = float(text)
     except ValueError:
         value = math.nan
     if not control.low <= value <= control.high:

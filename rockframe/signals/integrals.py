@@ -219,8 +219,11 @@ def mean_period(signal: Signal) -> float:
     """Return the mean period, :eq:`eq-mean-period`; NaN without power in its band [s]."""
     frequency, transform = transform_of(signal, MEAN_PERIOD_RESOLUTION)
     low, high = MEAN_PERIOD_BAND
-    inside = (frequency >= low) & (frequency <= high)
-    power = np.abs(transform[inside]) ** 2
+    half = 0.5 * frequency[-1] / max(frequency.size - 1, 1)
+    # counted whole or not at all, one at an end of the band would come and go with the time step
+    share = np.minimum(frequency + half, high) - np.maximum(frequency - half, low)
+    inside = share > 0.0
+    power = share[inside] * np.abs(transform[inside]) ** 2
     total = float(np.sum(power))
     return float(np.sum(power / frequency[inside])) / total if total > 0.0 else math.nan
 

@@ -13,7 +13,7 @@ from typing import Any, Final, Literal, TypeAlias, Unpack, cast
 import numpy as np
 import xarray as xr
 
-from rockframe.arguments import is_iterable
+from rockframe.arguments import is_iterable, json_attribute, read_attribute
 from rockframe.components import InitialState
 from rockframe.dynamics.protocol import Ending, Start
 from rockframe.errors import AssemblyError, ComponentError, RockframeError, did_you_mean, short_repr
@@ -152,6 +152,9 @@ InitialCondition: TypeAlias = InitialState | Ending
 """An initial state, or the end of another run of the same system."""
 
 
+_INITIAL: Final = "initial"
+
+
 def start_of(initial: InitialCondition) -> Start | Ending:
     """Return a beginning as the integrator takes it."""
     return initial if isinstance(initial, Ending) else Start(**vars(initial.si))
@@ -168,20 +171,32 @@ def read_continuation(dataset: xr.Dataset, system: Assembly, faults: list[str]) 
             f"initial is the end of a run of rockframe {attributes.get('rockframe_version')}, "
             "which kept states in another way; run it again"
         )
-    stored: dict[str, Any] = json.loads(attributes[END_STATE])
-    ending = Ending(
-        stored["mode"],
-        np.array(stored["state"], dtype=np.float64),
-        np.array(stored["memory"], dtype=np.float64),
-    )
-    passed = not math.isnan(float(attributes.get("overturning_time", math.nan)))
-    if json.loads(attributes["system_json"]) != system.to_dict():
+    ending = json_attribute(dataset, END_STATE, _read_ending, owner=_INITIAL)
+    time = read_attribute(dataset, "overturning_time", float, owner=_INITIAL, default=math.nan)
+    passed = not math.isnan(time)
+    if json_attribute(dataset, "system_json", dict, owner=_INITIAL) != system.to_dict():
         faults.append("initial is the end of a run of another system")
+    elif (ending.state.size, ending.memory.size) != _sizes_of_ending(system):
+        faults.append(f"initial has an attribute {END_STATE!r} that lacks numbers; it is damaged")
     elif passed and not _returned_within_limit(dataset, system, ending):
         faults.append("initial is the end of a run that overturned")
     elif cut := _cut_words(dataset):
         faults.append(cut)
     return ending if faults else _with_reset_peaks(ending, system)
+
+
+def _read_ending(stored: Mapping[str, Any]) -> Ending:
+    """Read what :func:`ending_as_json` returned."""
+    return Ending(
+        int(stored["mode"]),
+        np.array(stored["state"], dtype=np.float64),
+        np.array(stored["memory"], dtype=np.float64),
+    )
+
+
+def _sizes_of_ending(system: Assembly) -> tuple[int, int]:
+    """Return the sizes of state and memory."""
+    return system.model.scales.size, len(system.model.memory)
 
 
 def _cut_words(dataset: xr.Dataset) -> str:
@@ -196,11 +211,10 @@ def _cut_words(dataset: xr.Dataset) -> str:
     if dataset[name].attrs.get("units") != "s":
         return ""
     times = np.atleast_1d(dataset[name])[-2:].tolist()
-    described: dict[str, Any] = json.loads(str(dataset.attrs.get("run_json", "{}")))
-    step = described.get("output_step")
-    spacings = [] if step is None else [_read_time("output_step", step, TIME_STEP)]
+    spacings = json_attribute(dataset, "run_json", _spacings, owner=_INITIAL, default="{}")
     spacings += np.diff(times).tolist()  # longer in histories of which every nth time is kept
-    end, last = float(dataset.attrs["solver_end_time"]), max(times, default=0.0)
+    end = read_attribute(dataset, "solver_end_time", float, owner=_INITIAL)
+    last = max(times, default=0.0)
     # the end may be between two output times
     if not spacings or end - last < (1.0 - SAMPLE_TOLERANCE) * max(spacings):
         return ""
@@ -209,6 +223,12 @@ def _cut_words(dataset: xr.Dataset) -> str:
         f"initial is a part of a run, up to {last:.10g} s; a run is continued from its end, at "
         f"{end:.10g} s: give all of it{shorter}"
     )
+
+
+def _spacings(arguments: Mapping[str, Any]) -> list[float]:
+    """Return the output step of a run, if it was given [s]."""
+    step = _read_time("output_step", arguments.get("output_step"), TIME_STEP)
+    return [] if step is None else [step]
 
 
 def _with_reset_peaks(ending: Ending, system: Assembly) -> Ending:

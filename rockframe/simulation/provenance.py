@@ -1,8 +1,7 @@
 """Attributes of a result that describe its motion and system, and rebuilding of both from them."""
 
 import json
-from collections.abc import Generator, Iterable, Mapping
-from contextlib import contextmanager
+from collections.abc import Iterable, Mapping
 from enum import StrEnum
 from typing import Any, Final
 
@@ -10,18 +9,16 @@ import numpy as np
 import xarray as xr
 from numpy.typing import NDArray
 
-from rockframe.arguments import checked_mapping
+from rockframe.arguments import checked_mapping, json_attribute
 from rockframe.components import Component, InitialState, component_from_dict
 from rockframe.errors import RecordWarning, SchemaError, did_you_mean, short_repr, warn
 from rockframe.motion import GroundMotion
-from rockframe.motion.display import display_name
+from rockframe.motion.display import HISTORY_SEPARATOR
 from rockframe.solve.accuracy import Accuracy
 from rockframe.units import TIME, Unit, quantity_text
 
 _AFTER_END: Final = "_after_end"
 """Suffix of the names of samples of the motion that follow the histories."""
-_HISTORY_SEPARATOR: Final = "; "
-"""Separator between the steps of the history of a motion."""
 
 
 class Changes(StrEnum):
@@ -49,26 +46,20 @@ def motion_attributes(motion: GroundMotion | None) -> dict[str, str | float | in
         "motion_time_step": numbers.time_step,
         "motion_samples": int(numbers.horizontal.samples.size),
         "motion_json": json.dumps(motion.to_dict()),
-        "motion_history": _HISTORY_SEPARATOR.join(motion.history),
+        "motion_history": HISTORY_SEPARATOR.join(motion.history),
     }
 
 
-def motion_words(attributes: Mapping[str, Any]) -> str:
-    """Return the name of a result's motion, and the factor by which it was scaled."""
-    history = str(attributes.get("motion_history", "")).split(_HISTORY_SEPARATOR)
-    return display_name(str(attributes.get("motion", "")), history)
-
-
-def system_text(dataset: xr.Dataset) -> str:
+def system_text(dataset: xr.Dataset, *, owner: str) -> str:
     """Return the JSON text of a result's system; refuse a case of a sweep that changes it."""
-    axes = json.loads(dataset.attrs.get("axes_json", "[]"))
-    changed = [
-        str(axis["name"])
-        for axis in axes
-        if axis["changes"] in SYSTEM_AXES
-        and axis["name"] in dataset.coords
-        and not dataset[axis["name"]].dims
-    ]
+    of_system = json_attribute(
+        dataset,
+        "axes_json",
+        lambda axes: [str(axis["name"]) for axis in axes if axis["changes"] in SYSTEM_AXES],
+        owner=owner,
+        default="[]",
+    )
+    changed = [name for name in of_system if name in dataset.coords and not dataset[name].dims]
     if changed:
         msg = (
             f"the dataset is of a part of a sweep over {', '.join(changed)}, whose system need not "
@@ -163,19 +154,6 @@ def _joined(dataset: xr.Dataset, name: str, count: int) -> NDArray[Any]:
     if f"{name}{_AFTER_END}" in dataset:
         parts.append(dataset[f"{name}{_AFTER_END}"].to_numpy())
     return np.concatenate(parts)
-
-
-@contextmanager
-def damage_reported(words: str) -> Generator[None]:
-    """Raise a SchemaError that begins with these words for exceptions of damaged descriptions."""
-    try:
-        yield
-    except (ValueError, KeyError, TypeError, AttributeError) as problem:
-        reason = f"there is no {problem}" if isinstance(problem, KeyError) else problem
-        if isinstance(problem, json.JSONDecodeError):
-            reason = f"the JSON of system or motion is damaged ({problem})"
-        msg = f"{words}: {reason}"
-        raise SchemaError(msg) from problem
 
 
 def parts_and_options(

@@ -9,12 +9,11 @@ from typing import Any, Literal, Self
 
 import xarray as xr
 
-from rockframe.arguments import checked_bool, checked_dataset
+from rockframe.arguments import checked_bool, checked_dataset, damage_reported
 from rockframe.components import Component, InitialState
 from rockframe.errors import ComponentError, ModelWarning, warn
 from rockframe.motion import GroundMotion
 from rockframe.simulation.provenance import (
-    damage_reported,
     motion_from_dataset,
     parts_and_options,
     system_text,
@@ -486,10 +485,12 @@ class System(metaclass=SuggestingMeta):
         >>> rf.System.from_dataset(run).motion.name
         'sine pulse, 2.5 m/s^2, 1 Hz, cycles: 1'
         """
-        text = system_text(checked_dataset(dataset, owner=f"{cls.__name__}.from_dataset"))
-        with damage_reported("the dataset's attributes do not describe a system"):
-            description, motion = json.loads(text), motion_from_dataset(dataset)
-            parts, options = parts_and_options(description, signature(cls).parameters)
+        owner = f"{cls.__name__}.from_dataset"
+        text = system_text(checked_dataset(dataset, owner=owner), owner=owner)
+        with damage_reported("the dataset's attributes 'motion...' do not describe a motion"):
+            motion = motion_from_dataset(dataset)
+        with damage_reported("the dataset's attribute 'system_json' does not describe a system"):
+            parts, options = parts_and_options(json.loads(text), signature(cls).parameters)
             return cls(*parts, *([] if motion is None else [motion]), **options)
 
 

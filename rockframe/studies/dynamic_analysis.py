@@ -248,7 +248,7 @@ def _sentence(dataset: xr.Dataset, structures: Mapping[str, int]) -> str:
     repeated = int((of_overturning["flip_count"].to_numpy() > 1).sum())
     if repeated:
         text += f"; under {repeated} the verdict changed more than once"
-    of_scan = str(dataset.attrs["verdict"])
+    of_scan = str(dataset.attrs.get("verdict", ""))
     interrupted = of_scan.endswith(INTERRUPTED_ENDING)
     missing = int(overturns(dataset).isnull().sum())
     if missing and not interrupted:

@@ -1,6 +1,5 @@
 """Intensity measures of the motions of a sweep, and of a motion that is scaled."""
 
-import json
 import re
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
@@ -15,11 +14,12 @@ from rockframe.measures import average_spectral_acceleration, intensity_measures
 from rockframe.measures.intensity import measure_of_ground
 from rockframe.measures.response import checked_periods
 from rockframe.motion import GroundMotion
+from rockframe.results.joining import described_motions
 from rockframe.results.schema import SCHEMA
 from rockframe.results.variables.studies import MOTION
 from rockframe.results.variables.variable import OSCILLATOR
 from rockframe.simulation.system import System
-from rockframe.studies.sweeps.axes import labels_in_unit
+from rockframe.studies.sweeps.axes import Changes, described_axes, labels_in_unit
 from rockframe.studies.sweeps.case import known_motions
 from rockframe.studies.sweeps.motions import (
     ABBREVIATIONS,
@@ -272,7 +272,7 @@ def _motions_of_runs(runs: xr.Dataset, value: object, owner: str) -> dict[str, G
         msg = f"{owner}: found runs without the coordinate {MOTION!r}; expected it, as sweeps have"
         raise SchemaError(msg)
     used = set(runs[MOTION].to_numpy().astype(str).ravel().tolist())
-    unknown = sorted(used - set(json.loads(runs.attrs["motion_names"])))
+    unknown = sorted(used - set(described_motions(runs, owner=owner)))
     if unknown:
         msg = (
             f"{owner}: the sweep had no motion {unknown[0]!r}; datasets that were put together "
@@ -301,11 +301,11 @@ def _scale_factors(
     runs: xr.Dataset, motions: Mapping[str, GroundMotion], owner: str
 ) -> xr.DataArray:
     """Return the factor by which the motion of each case was multiplied."""
-    axes = [axis for axis in json.loads(runs.attrs["axes_json"]) if axis["changes"] == MOTION]
+    axes = [axis for axis in described_axes(runs, owner=owner) if axis.changes is Changes.MOTION]
     if not axes:
         return xr.DataArray(1.0)
-    name = axes[0]["name"]
-    labels = labels_in_unit(runs[name], axes[0]["unit"], owner=owner)
+    name = axes[0].name
+    labels = labels_in_unit(runs[name], axes[0].unit, owner=owner)
     if name == SCALE:
         return labels
 

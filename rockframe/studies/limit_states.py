@@ -9,7 +9,7 @@ from typing import Any, Final, cast
 import numpy as np
 import xarray as xr
 
-from rockframe.arguments import checked_dataset, checked_list
+from rockframe.arguments import checked_dataset, checked_list, json_attribute
 from rockframe.errors import ComponentError, SchemaError, did_you_mean, short_repr
 from rockframe.results.joining import SWEEP_ATTRIBUTES
 from rockframe.results.outcome import check_no_means, overturns
@@ -37,6 +37,8 @@ _PEAKS_UP_TO_OVERTURNING: Final = {
 }
 """Scalars that describe a run only up to the overturning angle."""
 _NEEDED_VARIABLES: Final = ("status", "peak_relative_rotation", "first_uplift_time", "overturned")
+_ROUNDING: Final = 1e-12
+"""Relative difference up to which two limits are one, given in different units."""
 
 
 @dataclass(frozen=True)
@@ -75,7 +77,14 @@ def limit_states(
             state = LimitState(0.0 if limit == UPLIFT else 1.0)
         else:
             state = LimitState(_rotation_limit(limit, owner, name))
-        states.setdefault(state.name, state)
+        known = states.setdefault(state.name, state)
+        both = (known.rotation, known.value), (state.rotation, state.value)
+        if not np.allclose(*both, rtol=_ROUNDING, atol=0.0, equal_nan=True):
+            msg = (
+                f"{owner}: two limit states are called {state.name!r}; expected values that differ "
+                "in their first six digits"
+            )
+            raise ComponentError(msg)
     states.pop(OVERTURNING, None)
     return (*states.values(), LimitState(1.0))
 
@@ -150,8 +159,12 @@ def states_json(states: Sequence[LimitState]) -> str:
 def states_of(analysis: xr.Dataset) -> tuple[LimitState, ...]:
     """Return the limit states that a dynamic analysis, or a part of it, still has."""
     names = np.atleast_1d(analysis["limit_state"].to_numpy()).tolist()
-    every = [LimitState(*row) for row in json.loads(analysis.attrs[LIMITS_ATTRIBUTE])]
-    return tuple(state for state in every if state.name in names)
+
+    def read(rows: Iterable[Any]) -> tuple[LimitState, ...]:
+        every = {(state := LimitState(*row)).name: state for row in rows}
+        return tuple(every[name] for name in every | dict.fromkeys(names) if name in names)
+
+    return json_attribute(analysis, LIMITS_ATTRIBUTE, read, owner="fragility")
 
 
 def check_runs(value: object, *, owner: str) -> xr.Dataset:

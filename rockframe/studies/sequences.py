@@ -13,6 +13,7 @@ import xarray as xr
 from rockframe.arguments import checked_list, is_iterable, with_string_keys
 from rockframe.errors import ComponentError, short_repr
 from rockframe.motion import GroundMotion
+from rockframe.motion.display import display_name
 from rockframe.motion.pair import motion_hint
 from rockframe.results.joining import CASE_COUNT
 from rockframe.results.outcome import overturns
@@ -81,6 +82,12 @@ def earthquake_sequences(
     a run from the start of its sequence, so that no state is lost in between. On rigid ground, on
     pads and on soil, a block that has come to rest retains only its slip and the yielding and
     breaking of its ties; a user-defined base may retain more.
+
+    Peaks and verdicts are those of runs that continue one another by ``initial``, to the accuracy
+    of integration; the number of impacts may be another one. How many tiny bounces precede rest
+    follows from rounding, and times are rounded otherwise after a longer time: under one of 180
+    pairs of stochastic motions a block had 290 instead of 260 impacts, and 247 to 309 under the
+    second motion scaled by 1 + 1e-14.
 
     Examples
     --------
@@ -192,7 +199,7 @@ def _join(first: GroundMotion, second: GroundMotion | None, pause_time: float) -
     if any(motion.si.vertical is not None for motion in motions):
         components = [motion.si.vertical or _still(motion.si.horizontal) for motion in motions]
         vertical = _concatenate(components, still)
-    name = ", then ".join(motion.name for motion in motions)
+    name = ", then ".join(display_name(motion.name, motion.history) for motion in motions)
     return GroundMotion(Motion(horizontal, vertical), name=name)
 
 

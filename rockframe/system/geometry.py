@@ -9,6 +9,7 @@ from rockframe.components import Component, FrameEquivalent, RearWall, RockingFr
 from rockframe.components.block_numbers import BlockSI
 from rockframe.components.frame_members import member_outlines
 from rockframe.components.rocking_frame import column_positions, frame_outlines
+from rockframe.motion.display import display_name
 from rockframe.notebook import Polygon, html_summary, readable_arguments, rectangle, shapes_svg
 from rockframe.signals.arrays import Array
 from rockframe.system.assembly import Assembly
@@ -191,7 +192,8 @@ def system_html(scene: Assembly, name: str) -> str:
     if options.inclination:
         rows["inclination"] = degrees_text(options.inclination)
     if scene.parts.motion is not None:
-        rows["motion"] = scene.parts.motion.name
+        motion = scene.parts.motion
+        rows["motion"] = display_name(motion.name, motion.history)
     return html_summary(name, rows, shapes_svg(scene_polygons(geometry_of(scene))))
 
 

@@ -424,6 +424,17 @@ def test_mean_and_predominant_period_of_a_long_harmonic():
     assert found.predominant_velocity_period.item() == pytest.approx(0.8, rel=5e-3)
 
 
+def test_mean_period_does_not_jump_between_nearly_equal_time_steps():
+    pulse = rf.GroundMotion.sine_pulse("4 m/s^2", "1 Hz")
+    steps = np.linspace(0.005, 0.0052, 5)
+    found = [intensity_measures(pulse.resampled(f"{step} s")).mean_period.item() for step in steps]
+    # the integrals over the band of the spectrum of one cycle
+    frequency = np.linspace(0.25, 20.0, 200_001)
+    power = (np.sin(math.pi * frequency) / (1.0 - frequency**2 + 1e-30)) ** 2
+    exact = np.trapezoid(power / frequency, frequency) / np.trapezoid(power, frequency)
+    assert found == pytest.approx([exact] * 5, rel=5e-4)
+
+
 # records against another library -------------------------------------------------------------
 
 

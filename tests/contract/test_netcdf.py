@@ -280,7 +280,8 @@ def damaged(**changed):
     return response
 
 
-NO_SYSTEM = r"^the dataset's attributes do not describe a system: "
+NO_SYSTEM = r"^the dataset's attribute 'system_json' does not describe a system: "
+NO_MOTION = r"^the dataset's attributes 'motion...' do not describe a motion: "
 
 
 @pytest.mark.parametrize(
@@ -322,7 +323,7 @@ def test_a_damaged_description_of_the_system_is_refused(text):
     ],
 )
 def test_a_damaged_description_of_the_motion_is_refused(changed):
-    with pytest.raises(SchemaError, match=NO_SYSTEM):
+    with pytest.raises(SchemaError, match=NO_MOTION):
         rf.System.from_dataset(damaged(**changed))
 
 
@@ -330,7 +331,7 @@ def test_a_damaged_description_of_the_motion_is_refused(changed):
 def test_missing_motion_attribute_does_not_crash(name):
     response = damaged()
     del response.attrs[name]
-    with pytest.raises(SchemaError, match=f"{NO_SYSTEM}there is no '{name}'"):
+    with pytest.raises(SchemaError, match=f"{NO_MOTION}there is no '{name}'"):
         rf.System.from_dataset(response)
 
 

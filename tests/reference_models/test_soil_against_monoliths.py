@@ -96,6 +96,23 @@ def compare_on_soil(ours, theirs):
     assert float(ours.flight_time) == pytest.approx(theirs.flight_time, abs=1e-6)
 
 
+def test_squat_block_on_soil():
+    """On soil there is no restitution, whose greatest value on rigid ground would be negative."""
+    squat = rf.Block(width="2 m", height="1 m", mass="4 t")
+    (x,) = noise(101, (30.0,))
+    ours = rf.System(squat, soil()).simulate(
+        motion_of(x), free_vibration="0.5 s", accuracy="reference"
+    )
+    theirs = winkler.simulate(
+        half_width=1.0, half_height=0.5, shape_factor=3.0, mass=4e3,
+        bed_stiffness=SOIL["stiffness"], bed_damping=SOIL["damping"], separation="displacement",
+        restraint="contact-state", gravity=GRAVITY, initial=(0.0, None, 0.0, 0.0), **TIGHT,
+        time_step=0.02, acceleration=x, duration=2.5, sample_times=ours.time.to_numpy(),
+    )  # fmt: skip
+    assert float(ours.peak_rotation) > 10.0 * float(ours.uplift_angle)
+    compare_on_soil(ours, theirs)
+
+
 # with the pressure rule and pivots that change with the contact, the package and the
 # monolith use different conventions (see the manual); both agree where pivots do not change
 SEPARATIONS = [("displacement", rule) for rule in RULES] + [

@@ -149,9 +149,17 @@ def test_concat_preserves_shared_attributes(runs):
         rf.System.from_dataset(mixed)
 
 
+def test_scales_of_one_motion_are_told_apart(runs):
+    name = runs[STANDS].attrs["motion"]
+    names = [f"2 times {name}", f"2.5 times {name}"]
+    for dim in ("motion", "run"):
+        assert rf.concat(row(runs, 2.0, STANDS), dim).motion.values.tolist() == names
+    assert "motion" not in rf.concat(row(runs, 2.0, STANDS), "scale", [2.0, STANDS]).coords
+
+
 def test_different_motions_become_a_coordinate(runs, tmp_path):
     other = run(STANDS, rf.GroundMotion.sine_pulse("1 m/s^2", "2 Hz"))
-    names = [runs[STANDS].attrs["motion"], other.attrs["motion"]]
+    names = [f"{STANDS} times {one.attrs['motion']}" for one in (runs[STANDS], other)]
     along = rf.concat([runs[STANDS], other])
     named = rf.concat({"first": runs[STANDS], "second": other})
     assert named.run.values.tolist() == ["first", "second"]

@@ -102,7 +102,8 @@ REFUSED = {
     "plot run.nc -o mine.pdf": "not a picture that rockframe wrote",
     "report run.nc -o mine.html": "not a report that rockframe wrote",
     "report run.nc -o moving.html": "not a report that rockframe wrote",
-    "report mine.nc": "no result of a run",
+    "report mine.nc": "not a report that rockframe wrote",
+    "report mine.nc -o new.html": "no result of a run",
     # unsuitable names
     "run scene.toml -o out": "the name has no ending",
     "run scene.toml -o out.csv": "ends in '.csv'",

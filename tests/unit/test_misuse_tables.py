@@ -294,7 +294,7 @@ VALUES = {
     "rf.System.from_dict({'part': []})": "'parts'",
     "rf.System.from_dataset('out.nc')": "'out.nc'; expected a dataset",
     "rf.System.from_dataset(run.drop_attrs())": "'system_json'",
-    "rf.System.from_dataset(run.assign_attrs(system_json='{'))": "the JSON of system or motion is",
+    "rf.System.from_dataset(run.assign_attrs(system_json='{'))": "'system_json' does not describe",
     "SYSTEM.frequencies()": "rigid ground has no small motion",
     "SYSTEM.moment_rotation(0.1)": "angles needs an angle with a unit, got 0.1",
     "SYSTEM.moment_rotation(([], 'rad'))": "angles must be one or more",

@@ -100,6 +100,13 @@ def test_typed_numbers_are_used_exactly():
     assert choice.system().parts.block.width.magnitude == 0.71234567
 
 
+@pytest.mark.parametrize("text", ["1,000", "1,5", "1.000,5", ""])
+def test_typed_numbers_with_a_comma_are_refused(text):
+    choice, faults = read_choice({"mass": text}, None)
+    assert faults == [f"Mass: found {text!r}; expected a number from 0.05 to 200 t"]
+    assert choice.numbers["mass"] == 5.5
+
+
 @pytest.mark.parametrize("headers", [
     {"Host": "evil.example"}, {"Host": "evil.example:80"}, {"Host": ""},
     {"Origin": "http://evil.example"}, {"Origin": "null"},

@@ -133,6 +133,13 @@ def stochastic(
     ModelWarning
         The magnitude exceeds 8, or the distance 270 km: the model is extrapolated.
 
+    Notes
+    -----
+    At first the ground is nearly still: the motion rises from rest for about 1/f_c, and is below
+    1 % of its peak for about a quarter of its length, such as 11 s of 45 s at magnitude 6.5 and
+    15 km. ``window`` can leave this part out, but the rest no longer starts at rest, which distorts
+    the displacement of the ground.
+
     Examples
     --------
     >>> from rockframe import GroundMotion

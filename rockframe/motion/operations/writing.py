@@ -17,7 +17,7 @@ from rockframe.suggestions import with_hints
 from rockframe.writing import FileKind, checked_path, write_file
 
 _TITLE: Final = "PEER FORMAT ACCELERATION FILE, WRITTEN BY ROCKFRAME"
-_KIND: Final = FileKind.marked("an acceleration file", (".at2",), _TITLE)
+AT2_KIND: Final = FileKind.marked("an acceleration file", (".at2",), _TITLE)
 _UNIT: Final = "ACCELERATION TIME SERIES IN UNITS OF G"
 _PER_LINE: Final = 5
 _USUAL_DECIMALS: Final = 4
@@ -102,9 +102,9 @@ def to_at2(
     ]
     text = "\n".join(lines) + "\n"
     content = text.encode("ascii")
-    checked_path(path, _KIND, overwrite=True)
+    checked_path(path, AT2_KIND, overwrite=True)
     read = [path] if _is_source(motion, path, content) else []
-    write_file(path, _KIND, content, overwrite=overwrite, read=read)
+    write_file(path, AT2_KIND, content, overwrite=overwrite, read=read)
 
 
 def _is_source(motion: MotionValue, path: str | os.PathLike[str], content: bytes) -> bool:

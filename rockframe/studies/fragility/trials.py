@@ -5,7 +5,6 @@ capacity lies: below the intensity of a run that exceeds a limit state, above th
 does not, and within a bracket of a dynamic analysis.
 """
 
-import json
 import math
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
@@ -21,7 +20,7 @@ from rockframe.errors import ComponentError, SchemaError, StudyError, first_alon
 from rockframe.results.variables.studies import CASE, MOTION
 from rockframe.signals.arrays import AnyArray, Array
 from rockframe.studies.intensities import column_of_runs
-from rockframe.studies.sweeps.axes import Changes
+from rockframe.studies.sweeps.axes import Changes, described_axes
 from rockframe.studies.sweeps.motions import SCALE
 
 Labelled = TypeVar("Labelled", xr.DataArray, xr.Dataset)
@@ -52,8 +51,9 @@ def structures_of(
     runs: xr.Dataset, pooled: Sequence[str], measures: Sequence[object], *, owner: str
 ) -> Structures:
     """Find the structures of a sweep."""
-    axes, own_measures = _axes(runs), _own_measures(runs, measures)
-    changed = _structural_axes(runs, own_measures)
+    axes = [axis.name for axis in described_axes(runs, owner=owner)]
+    own_measures = _own_measures(runs, measures)
+    changed = _structural_axes(runs, own_measures, owner=owner)
     dims = [str(dim) for dim in runs["status"].dims]
     differing = [name for name in changed if name in runs.coords or name in dims]
     missing = [name for name in changed if name not in differing]
@@ -103,7 +103,7 @@ def check_one_structure(
 ) -> list[str]:
     """Refuse runs of several structures, except over the axes `pooled`, which are returned."""
     pooled = checked_list(pooled, owner=owner, name="pooled", of="names")
-    changed = _structural_axes(runs, _own_measures(runs, measures))
+    changed = _structural_axes(runs, _own_measures(runs, measures), owner=owner)
     several = [
         name
         for name in changed
@@ -128,7 +128,7 @@ def check_one_structure(
 def attributes_of_system(runs: xr.Dataset, *, changed: bool | None = None) -> dict[str, Any]:
     """Return the attributes that describe the system of runs, which a sweep may have changed."""
     if changed is None:
-        changed = any(name in runs.coords for name in _structural_axes(runs))
+        changed = any(name in runs.coords for name in _structural_axes(runs, owner="the runs"))
     names = ("model",) if changed else ("model", "system_json")
     return {name: runs.attrs[name] for name in names if name in runs.attrs}
 
@@ -146,11 +146,6 @@ def _check_pooled(
         raise ComponentError(msg)
 
 
-def _axes(runs: xr.Dataset) -> dict[str, str]:
-    """Return what each axis of a sweep changes."""
-    return {axis["name"]: axis["changes"] for axis in json.loads(runs.attrs["axes_json"])}
-
-
 def _own_measures(runs: xr.Dataset, values: Sequence[object]) -> list[str]:
     """Return names of intensities that are arrays, along the axis of that name if there is one."""
     columns = [column_of_runs(runs, value) for value in values]
@@ -160,9 +155,10 @@ def _own_measures(runs: xr.Dataset, values: Sequence[object]) -> list[str]:
     ]  # fmt: skip
 
 
-def _structural_axes(runs: xr.Dataset, own: Sequence[str] = ()) -> list[str]:
+def _structural_axes(runs: xr.Dataset, own: Sequence[str] = (), *, owner: str) -> list[str]:
     """Return the axes along which structures differ."""
-    return [n for n, changes in _axes(runs).items() if n not in own and changes != Changes.MOTION]
+    axes = described_axes(runs, owner=owner)
+    return [a.name for a in axes if a.name not in own and a.changes is not Changes.MOTION]
 
 
 def _group_structures(

@@ -12,6 +12,7 @@ import numpy as np
 import pint
 import xarray as xr
 
+from rockframe.arguments import json_attribute
 from rockframe.errors import ComponentError, UnitsError, short_repr
 from rockframe.results.schema import SCHEMA
 from rockframe.results.variables.studies import CASE, MOTION
@@ -58,6 +59,17 @@ class Axis:
     def from_dict(cls, described: Mapping[str, Any], values: AnyArray) -> "Axis":
         """Return the axis that :meth:`to_dict` described."""
         return cls(values=values, **{**described, "changes": Changes(described["changes"])})
+
+
+def described_axes(dataset: xr.Dataset, *, owner: str) -> list[Axis]:
+    """Return the axes of a sweep, without their values; none of a run."""
+    return json_attribute(
+        dataset,
+        "axes_json",
+        lambda axes: [Axis.from_dict(axis, np.empty(0)) for axis in axes],
+        owner=owner,
+        default="[]",
+    )
 
 
 def read_numbers(value: object, measure: Measure, name: str, *, owner: str = OWNER) -> AnyArray:

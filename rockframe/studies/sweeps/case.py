@@ -1,10 +1,9 @@
 """A single case of a sweep."""
 
-import json
 import math
 from collections.abc import Iterable, Mapping
 from contextlib import suppress
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from os import PathLike
 from pathlib import Path
 from typing import Any, Final, cast
@@ -12,14 +11,22 @@ from typing import Any, Final, cast
 import numpy as np
 import xarray as xr
 
+from rockframe.arguments import json_attribute
 from rockframe.components import InitialState
 from rockframe.errors import SchemaError, StudyError, did_you_mean, short_repr
 from rockframe.motion import GroundMotion
-from rockframe.results.joining import SWEEP_ATTRIBUTES
+from rockframe.results.joining import SWEEP_ATTRIBUTES, described_motions
 from rockframe.results.variables.studies import MOTION, REPEATED
 from rockframe.simulation.system import System
 from rockframe.solve.accuracy import LEVELS, Accuracy
-from rockframe.studies.sweeps.axes import SYSTEM_AXES, Axis, Changes, labels_in_unit, read_number
+from rockframe.studies.sweeps.axes import (
+    SYSTEM_AXES,
+    Axis,
+    Changes,
+    described_axes,
+    labels_in_unit,
+    read_number,
+)
 from rockframe.studies.sweeps.chunk import REPEATED_LEVEL
 from rockframe.studies.sweeps.motions import full_name, motion_number, motion_of_case, named_motions
 from rockframe.studies.sweeps.scenes import SweptScene, scene_of
@@ -138,27 +145,23 @@ def case(
     full = {
         name if name in dataset.dims else full_name(name): label for name, label in labels.items()
     }
-    axes = json.loads(attributes["axes_json"])
-    units = {axis["name"]: axis["unit"] for axis in axes}
-    indices = _indices_of_case(dataset, full, units)
+    axes = described_axes(dataset, owner=_OWNER)
+    indices = _indices_of_case(dataset, full, {axis.name: axis.unit for axis in axes})
     values: dict[Axis, Any] = {}
-    for described in axes:
-        value = _value(dataset, described["name"], indices, described["unit"])
-        values[Axis.from_dict(described, np.array([value]))] = value
+    for axis in axes:
+        value = _value(dataset, axis.name, indices, axis.unit)
+        values[replace(axis, values=np.array([value]))] = value
     name = _value(dataset, MOTION, indices)
     motion = known_motions(dataset, motions, names=[name], needed=True).get(name)
-    swept = _scene(scene, attributes, _OWNER)
+    swept = _scene(scene, dataset, _OWNER)
     of_scene = {axis: value for axis, value in values.items() if axis.changes in SYSTEM_AXES}
     system = swept.system(of_scene)
     motion = system.motion if motion is None else motion
-    options = json.loads(attributes["run_json"])
-    options = {name: value for name, value in options.items() if value is not None}
+    options = json_attribute(dataset, "run_json", _read_options, owner=_OWNER)
     start = {
         axis.parameter: value for axis, value in values.items() if axis.changes is Changes.START
     }
-    options["initial"] = InitialState.from_dict(options["initial"]).with_si(start)
-    options["accuracy"] = Accuracy(**options["accuracy"])
-    options["points"] = options.get("points") or None
+    options["initial"] = options["initial"].with_si(start)
     for axis, value in values.items():
         if axis.changes is Changes.MOTION and motion is not None:
             motion = motion_of_case(motion, axis.name, value, attributes.get("spectral_period"))
@@ -180,17 +183,26 @@ def _read_runs(runs: object) -> xr.Dataset:
     raise SchemaError(msg)
 
 
+def _read_options(described: Mapping[str, Any]) -> dict[str, Any]:
+    """Read the arguments of the runs of a sweep."""
+    options = {name: value for name, value in described.items() if value is not None}
+    options["initial"] = InitialState.from_dict(options["initial"])
+    options["accuracy"] = Accuracy(**options["accuracy"])
+    options["points"] = options.get("points") or None
+    return options
+
+
 def system_of_case(dataset: xr.Dataset, *, owner: str) -> System:
     """Return the system of a sweep, with the values of those axes along which one was selected."""
     values: dict[Axis, Any] = {}
-    for described in json.loads(dataset.attrs["axes_json"]):
-        if described["changes"] not in SYSTEM_AXES:
+    for axis in described_axes(dataset, owner=owner):
+        if axis.changes not in SYSTEM_AXES:
             continue
-        labels = _coordinate(dataset, described["name"], owner)
+        labels = _coordinate(dataset, axis.name, owner)
         if labels.size == 1:
-            value = labels_in_unit(labels, described["unit"], owner=owner).item()
-            values[Axis.from_dict(described, np.array([value]))] = value
-    return _scene(None, cast("Mapping[str, Any]", dataset.attrs), owner).system(values)
+            value = labels_in_unit(labels, axis.unit, owner=owner).item()
+            values[replace(axis, values=np.array([value]))] = value
+    return _scene(None, dataset, owner).system(values)
 
 
 def _indices_of_case(
@@ -268,10 +280,11 @@ def _value_at(labels: xr.DataArray, indices: Mapping[str, int]) -> Any:
     return labels.isel({dim: indices[str(dim)] for dim in labels.dims}).item()
 
 
-def _scene(given: object, attributes: Mapping[str, Any], owner: str) -> SweptScene:
+def _scene(given: object, dataset: xr.Dataset, owner: str) -> SweptScene:
     swept = None if given is None else scene_of(given)
+    attributes = cast("Mapping[str, Any]", dataset.attrs)
     if "system_json" in attributes:
-        return scene_of(System.from_dict(json.loads(attributes["system_json"])))
+        return scene_of(json_attribute(dataset, "system_json", System.from_dict, owner=owner))
     if swept is not None:
         return swept
     if (known := cached_study(attributes)) is not None:
@@ -279,7 +292,7 @@ def _scene(given: object, attributes: Mapping[str, Any], owner: str) -> SweptSce
     advice = "give it as scene="
     if owner != _OWNER:  # which takes no scene
         advice = "give rf.case(dataset, scene=...).simulate() instead of the case"
-    msg = f"{owner}: the scene was the function {attributes['function']}; {advice}"
+    msg = f"{owner}: the scene was the function {attributes.get('function')}; {advice}"
     raise StudyError(msg)
 
 
@@ -293,8 +306,7 @@ def known_motions(
 ) -> dict[str, GroundMotion]:
     """Return the available motions of a sweep, or those of some names, before they were scaled."""
     attributes: Mapping[str, Any] = cast("Mapping[str, Any]", runs.attrs)
-    every = json.loads(attributes["motion_names"]), json.loads(attributes["motions_json"])
-    described: dict[str, Any] = dict(zip(*every, strict=True))
+    described = described_motions(runs, owner=owner)
     if names is None:
         used = set(runs[MOTION].to_numpy().astype(str).ravel().tolist()) if MOTION in runs else None
         names = [name for name in described if used is None or name in used]
@@ -306,6 +318,9 @@ def known_motions(
     records = {motion.sha256: motion for motion in given.values()}
     motions: dict[str, GroundMotion] = {}
     for name in names:
+        if name not in described:
+            msg = f"{owner}: the sweep had no motion {name!r}; there are {', '.join(described)}"
+            raise SchemaError(msg)
         description = described[name]
         if description is None:
             continue

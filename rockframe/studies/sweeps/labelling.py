@@ -11,6 +11,7 @@ from typing import Any, Final
 import numpy as np
 import xarray as xr
 
+from rockframe.arguments import read_attribute
 from rockframe.errors import ModelWarning, SolverWarning, warn
 from rockframe.results.forces import count_slides
 from rockframe.results.joining import CASE_COUNT
@@ -187,9 +188,10 @@ _NUMBER: Final = re.compile(r"(?<![\w.])[-+]?\d+(?:\.\d+)?(?:e[-+]?\d+)?(?![\w.]
 
 def cases_verdict(dataset: xr.Dataset) -> str:
     """Describe the outcomes of the cases of a dataset; for a whole result as in its attribute."""
-    text, total = str(dataset.attrs.get("verdict", "")), dataset.attrs.get(CASE_COUNT)
-    if total is None or "status" not in dataset:
+    text = str(dataset.attrs.get("verdict", ""))
+    if CASE_COUNT not in dataset.attrs or "status" not in dataset:
         return text
+    total = read_attribute(dataset, CASE_COUNT, int, owner="the verdict")
     status = dataset["status"]
     whole = status.dtype.kind in "iu"  # `where` and `reindex` leave gaps
     if not whole and (MESSAGE not in dataset or dataset[MESSAGE].dims != status.dims):

@@ -84,7 +84,7 @@ FILES = {
     "fragility scene.toml nowhere": "no such file or folder, 'nowhere'",
     "fragility run.nc": "found a single run, which is no sweep",
     "animate record.nc -o x.html": "needs the result of one run",
-    "animate scene.toml -o x.avi": "ends in .html or .gif or .mp4",
+    "animate scene.toml -o x.avi": "ends in .gif or .mp4 or .html",
     "animate run.nc -o x.html --scale 2": "this is a result, which has run",
     "convert record.AT2 -o x.xyz": "the ending gives no format",
     "convert record.AT2 --to csv -o none/deep": "this folder cannot be made",

@@ -11,9 +11,10 @@ from pathlib import Path
 
 import pytest
 import xarray as xr
+from matplotlib.animation import FFMpegWriter
 
 import rockframe as rf
-from rockframe.command import streams
+from rockframe.command import analyses, figures, report, runs, streams
 from rockframe.command.commands import COMMANDS
 from rockframe.command.files.templates import TEMPLATES
 from rockframe.command.shared import RUN_KIND
@@ -176,8 +177,39 @@ def test_interrupted_analysis_exits_with_code_130(name, run_command, monkeypatch
 
 def test_binary_output_to_a_terminal_is_refused(run_command, monkeypatch):
     monkeypatch.setattr(sys, "stdout", Terminal())
+    monkeypatch.setattr(runs, "simulate_scene", lambda *_, **__: pytest.fail("a run was made"))
     code, _, err = run_command("run", "scene.toml", "-o", "-")
     assert (code, "the standard output is a terminal" in err) == (2, True)
+
+
+UNWRITABLE = {
+    "animate scene.toml -o none/x.html": "there is no folder 'none'",
+    "animate scene.toml -o x.mp4": "needs the program ffmpeg",
+    "animate scene.toml -o x.html --speed 2": "--speed is for films",
+    "animate scene.toml -o mine.html": "not a player that rockframe wrote",
+    "report run.nc --check circolare_2019 confidence_factor=1.35 -o x.pdf": "ends in .html",
+    "run scene.toml -o - --json": "the answer in JSON goes to the standard output already",
+    "critical scene.toml -o - --picture -": "another file goes to the standard output already",
+}
+if sys.platform == "linux":  # where no user can write
+    UNWRITABLE["run scene.toml -o /proc/x.nc"] = "it cannot be written"
+
+
+@pytest.mark.parametrize(("words", "fault"), UNWRITABLE.items())
+def test_outputs_are_checked_before_the_computation(words, fault, run_command, monkeypatch):
+    assert run_command("run", "scene.toml", "-o", "run.nc")[0] == 0
+    Path("mine.html").write_text("mine")
+
+    def computes(*_, **__):
+        pytest.fail("the computation began")
+
+    for module in (figures, runs):
+        monkeypatch.setattr(module, "simulate_scene", computes)
+    monkeypatch.setattr(analyses, "critical_scale", computes)
+    monkeypatch.setattr(report, "call_typed", computes)
+    monkeypatch.setattr(FFMpegWriter, "isAvailable", lambda: False)
+    code, _, err = run_command(*words.split())
+    assert (code, fault in err) == (2, True)
 
 
 @pytest.mark.parametrize("form", [[], pytest.param(["--json"], marks=pytest.mark.long)])

@@ -25,6 +25,9 @@ def with_small(names):
         ((BLOCK, PADS, CAP, SOIL), {"coupling": "cascade"}, STACK[:3]),
         ((BLOCK, SOIL), {}, ("rigid ground", "soil")),
         ((BLOCK, CAP, SOIL), {}, ("rigid ground", "soil", "cap and soil")),
+        # too squat to rock on rigid ground
+        ((BLOCK.replace(height="2 m"), PADS), {}, ("two pads",)),
+        ((BLOCK.replace(height="2 m"), SOIL), {}, ("soil",)),
     ],
 )
 def test_model_ladder_contains_the_simpler_models(parts, options, names):

@@ -82,6 +82,17 @@ def test_invalid_limit_states_are_refused(runs):
             rf.fragility(runs, limits=[wrong])
 
 
+def test_limits_that_agree_in_six_digits_are_refused(runs):
+    for pair in (
+        [0.1, 0.1000000001],
+        [("peak_rotation", "1 mrad"), ("peak_rotation", "1.0000001 mrad")],
+    ):
+        with pytest.raises(ComponentError, match="two limit states are called"):
+            rf.fragility(runs, limits=pair)
+    again = [("peak_rotation", "1 mrad"), ("peak_rotation", "0.001 rad"), 0.3, 0.1 + 0.2]
+    assert rf.fragility(runs, limits=again).sizes["limit_state"] == 3
+
+
 def test_cases_without_a_result_are_omitted(runs):
     lacking = runs.assign(overturned=runs.overturned.astype(float)).copy(deep=True)
     for name in ("peak_relative_rotation", "peak_point_horizontal_acceleration"):
