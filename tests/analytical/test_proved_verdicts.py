@@ -241,22 +241,36 @@ def test_critical_scale_is_bracketed_from_any_start():
         assert found.undecided == 0
 
 
-@pytest.mark.parametrize(("share", "verdict"), [(-1e-9, "safe for ever"), (1e-9, "overturns")])
-def test_peak_at_overturning_angle_is_decided_though_block_comes_to_rest(share, verdict):
-    """Under 3 m/s^2, which turn it back, its energy is constant; then the ground is still."""
+def prove_peak_at_overturning_angle(share, **options):
+    """Begin with a share more than the rate at which the block just reaches the angle.
+
+    Under 3 m/s^2, which turn it back, its energy is constant; then it comes to rest.
+    """
     theta, leans = float(np.arctan(0.25)), 0.05  # at the start theta less a twentieth
     work = 9.81 * (1.0 - np.cos(leans * theta)) + 3.0 * np.sin(leans * theta)
     rate = float(np.sqrt(2.0 * 0.75 * work)) * (1.0 + share)
     pull = np.zeros(701)
     pull[:11] = 3.0
-    proof = rf.prove(
+    return rf.prove(
         system(4, 1.0), rf.GroundMotion.from_arrays((pull, "m/s^2"), "0.02 s"),
         initial=rf.InitialState(
             rotation=f"{(1.0 - leans) * theta} rad", angular_velocity=f"{rate} rad/s"
         ),
+        **options,
     )  # fmt: skip
+
+
+@pytest.mark.parametrize(("share", "verdict"), [(-1e-9, "safe for ever"), (1e-9, "overturns")])
+def test_peak_at_overturning_angle_is_decided_though_block_comes_to_rest(share, verdict):
+    proof = prove_peak_at_overturning_angle(share)
     assert proof.verdict == verdict
     assert np.isnan(proof.latest) or proof.latest - proof.earliest < 1e-12
+
+
+def test_set_some_of_whose_members_pass_overturning_angle_is_undecided():
+    proof = prove_peak_at_overturning_angle(0.0, scale_tolerance=1e-6, parts=1)
+    assert not proof.decided
+    assert proof.reason == "whether it passed its overturning angle is not resolved"
 
 
 def test_motion_without_critical_scale_is_refused():
