@@ -108,7 +108,7 @@ def test_uplifts_about_a_sample_contain_those_of_members(tolerance):
 
 
 def test_uplift_at_a_jump_of_the_ground_is_undecided():
-    """The guard is zero for some members at the end of an interval, after which the ground jumps."""
+    """The guard is zero for some members at the end of an interval; then the ground jumps."""
     limit = GRAVITY * np.tan(BLOCK.left.angle)
     pieces = np.zeros((2, 6))
     pieces[0, :2], pieces[1, :2] = (0.5 * limit, 0.5 * limit), (0.9 * limit, limit)
