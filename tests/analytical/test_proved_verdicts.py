@@ -5,6 +5,7 @@ import json
 import numpy as np
 import pytest
 from pages import DOCS, table
+from scipy.optimize import brentq
 
 pytest.importorskip("flint")
 
@@ -265,6 +266,32 @@ def test_peak_at_overturning_angle_is_decided_though_block_comes_to_rest(share, 
     proof = prove_peak_at_overturning_angle(share)
     assert proof.verdict == verdict
     assert np.isnan(proof.latest) or proof.latest - proof.earliest < 1e-12
+
+
+def energy(corner, share):
+    """Return the potential energy over the inertia at a share of the overturning angle."""
+    heights = np.cos((1.0 - share) * corner.angle) - np.cos(corner.angle)
+    return 9.81 * corner.radius / corner.inertia * heights
+
+
+@pytest.mark.parametrize("surplus", [-1e-9, 1e-9])
+@pytest.mark.parametrize("sign", [-1, 1])
+def test_energy_decides_to_either_side_on_still_ground(sign, surplus):
+    """From rest on its far corner, over the near one, of which the crest is lower; or outwards."""
+    scene = system(4, 2.0, 0.1 * sign)
+    model = scene.assembly.model.system
+    near, far = (model.right, model.left)[::sign]
+    still = rf.GroundMotion.from_arrays((np.zeros(3), "m/s^2"), "0.01 s")
+    verdict = "overturns" if surplus > 0.0 else "safe for ever"
+    needed = energy(near, 1.0) * (1.0 + surplus) / near.restitution**2
+    share = brentq(lambda share: energy(far, share) - needed, 0.0, 1.0, xtol=1e-15)
+    leans = rf.InitialState(rotation=f"{-sign * share * far.angle!r} rad")
+    rate = float(sign * np.sqrt(2.0 * (energy(near, 1.0) * (1.0 + surplus) - energy(near, 0.5))))
+    moves = rf.InitialState(
+        rotation=f"{0.5 * sign * near.angle!r} rad", angular_velocity=f"{rate!r} rad/s"
+    )
+    for initial in (leans, moves):
+        assert rf.prove(scene, still, initial=initial).verdict == verdict
 
 
 def test_set_some_of_whose_members_pass_overturning_angle_is_undecided():

@@ -1,5 +1,6 @@
-"""Times of uplift in proofs contain those of members, found in closed form or from roots."""
+"""Times of uplift, and states after it, in proofs contain those of members."""
 
+import mpmath
 import numpy as np
 import pytest
 
@@ -7,8 +8,11 @@ import rockframe as rf
 
 pytest.importorskip("flint", reason="python-flint is not installed")
 
+from reference_models.fifty_digits import DIGITS, ExactRun
+
 from rockframe.proof.balls import ball, working_precision
 from rockframe.proof.problem import Deviations, Problem, Undecided
+from rockframe.proof.rocking import RockingProver
 from rockframe.proof.uplift import find_uplift, first_zero
 from rockframe.signals.motion import Incline, Motion, Signal
 from rockframe.system.bodies import OverturningAngles
@@ -118,3 +122,29 @@ def test_uplift_at_a_jump_of_the_ground_is_undecided():
         scene = Problem.of(BLOCK, motion, Incline(0.0, GRAVITY), far, 1.0, inputs, 0.1)
         with pytest.raises(Undecided):
             find_uplift(scene, 0, scene.ground(0), scene.length(0))
+
+
+@pytest.mark.parametrize("tolerance", [1e-3, 0.05])
+def test_states_of_members_are_enclosed_when_the_last_one_lifts(tolerance):
+    """The ground acceleration rises from zero, past that of uplift to the left."""
+    limit = GRAVITY * np.tan(BLOCK.left.angle)
+    across = np.array([0.0, 2.0 * limit, 3.0 * limit])
+    with working_precision(106), mpmath.workdps(DIGITS):
+        scene = problem(across, np.zeros(3), tolerance)
+        ground = scene.ground(0)
+        at, side = find_uplift(scene, 0, ground, scene.length(0))
+        prover = RockingProver(scene, sign=side, uncertain=scene.uncertain())
+        delay = at.upper() - at.lower()
+        box = prover._lifted_states(ground.at(at), delay).box()
+        for share in (-0.999, 0.0, 0.999):
+            scale = 1 + mpmath.mpf(share) * tolerance
+            rate = scale * mpmath.mpf(float(across[1])) / STEP
+            lifts = GRAVITY * mpmath.tan(mpmath.mpf(BLOCK.left.angle)) / rate
+            rows = [rate * lifts, rate], [mpmath.mpf(GRAVITY), mpmath.mpf(0)]
+            series = ExactRun(BLOCK, across).polynomial(side, [mpmath.mpf(0)] * 2, *rows)
+            left = mpmath.mpf(at.upper().str(DIGITS, radius=False)) - lifts
+            assert left > 0
+            for enclosure, of in zip(box, series, strict=True):
+                state = mpmath.polyval(of[::-1], left)
+                assert enclosure.overlaps(ball(mpmath.nstr(state, 40)) + ball(0, 1e-30))
+    assert side == -1
