@@ -114,6 +114,8 @@ def follow_bounces(
         else:
             instant = instant.later(problem, window)
         if is_longest and lift is not None:
+            if lift[0].is_zero():  # a jump of the ground lifts it, not a rise from zero
+                return None
             delay = lift[0].upper() - lift[0].lower()
             return _uplift_state(problem, instant, lift[1], ball(delay), bounds)
     return None
@@ -184,7 +186,7 @@ class _Bounds:
         )
         if not left <= 2 * self.remaining_speed:  # else they may go beyond `reach`
             return None
-        least = ball(min((restoring.least.lower() for restoring in both_sides), key=float))
+        least = ball(hull([restoring.least for restoring in both_sides]).lower())
         if least > 0:
             lost = (1 - e) * least / 2
             resting_time = magnitude(left / lost)

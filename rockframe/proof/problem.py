@@ -55,10 +55,6 @@ class Deviations(NamedTuple):
         """Whether all of them are single numbers."""
         return all(deviation.is_exact() for deviation in self)
 
-    def centred(self) -> "Deviations":
-        """Return the deviations less their middles."""
-        return self._make(deviation - deviation.mid() for deviation in self)
-
     def halves(self, influences: list[float]) -> "tuple[Deviations, Deviations]":
         """Halve the set along the input of greatest influence, or the widest if none has any."""
         sizes = influences if any(influences) else [float(deviation.rad()) for deviation in self]
@@ -265,6 +261,12 @@ class Problem(PiecewiseGround):
             CornerNumbers.of(1, block.right, limits.right, inputs),
             CornerNumbers.of(-1, block.left, limits.left, inputs), frequency,
         )  # fmt: skip
+
+    def uncertain(self) -> Deviations:
+        """Return the deviations of the inputs from the middles of their balls."""
+        left, right = self.left, self.right
+        inputs = left.restitution, right.restitution, self.scale, left.angle, right.angle
+        return Deviations(*(value - value.mid() for value in inputs))
 
     def corner(self, sign: int) -> CornerNumbers:
         """Return the corner that bears while the rotation has a sign."""

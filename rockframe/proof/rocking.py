@@ -35,7 +35,7 @@ from rockframe.system.bodies import OverturningAngles
 
 SHORTEST_STEP: Final = 2.0**-30
 """Step over an interval of the motion below which a proof is given up."""
-FINE_STEP: Final = 2.0**-6
+FINE_STEP: Final = 2.0**-20
 """Step near the overturning angle, over an interval of the motion."""
 FINE_STEP_OF_SET: Final = 2.0**-3
 """Step near the overturning angle for a set of inputs, whose times of overturning differ anyway."""
@@ -103,6 +103,8 @@ class RockingProver:
         while True:
             verdict = self._follow_rest() if self.sign == 0 else self._follow_rocking()
             if verdict is not None:
+                passed = "whether it passed its overturning angle is not resolved"
+                require(verdict or self.overturning_time is None, passed)
                 return verdict
 
     # ---- standing
@@ -185,7 +187,7 @@ class RockingProver:
             try:
                 new, bounds = self._make_step(ground, step, ends_at_impact=ends_at_impact)
                 near = self._may_overturn(new, bounds)
-                if not (near and float(step.mid()) > fine):
+                if not near or float(step.mid()) <= fine or self._passes_limit(new, bounds):
                     if ends_at_impact:
                         impact = self._apply_impact(new, ground.at(step), step, left, to_end=to_end)
                     break
@@ -199,11 +201,11 @@ class RockingProver:
                     continue
             shorter = (shorter / 2).mid()
             step, to_end, ends_at_impact = shorter, False, False
+        if new.box()[0] * self.sign > corner.limit:
+            self._enclose_overturning_time(ground, step, passes=self._passes_limit(new, bounds))
+            return True
         if near and self.overturning_time is None:
             self.overturning_time = self.time, self.time
-        if self.overturning_time is not None and new.box()[0] * self.sign > corner.limit:
-            self._narrow_overturning_time(ground, step, rises=bounds.rate * self.sign > 0)
-            return True
         self.states, self.just_lifted = new if impact is None else impact.states, ends_at_impact
         if impact is not None:
             self.sign, self.impacts = -self.sign, self.impacts + 1
@@ -289,11 +291,16 @@ class RockingProver:
         ends = self.states.box()[0], new.box()[0]
         return not (steady and all(end * s < limit for end in ends))
 
-    def _narrow_overturning_time(self, ground: GroundPiece, step: Ball, *, rises: bool) -> None:
-        """Narrow down the time at which the overturning angle is first reached."""
+    def _passes_limit(self, new: SetOfStates, bounds: MotionBounds) -> bool:
+        """Whether all members pass the overturning angle in a step, each once."""
+        s, limit = self.sign, self.corner.limit
+        begin, end = self.states.box()[0] * s, new.box()[0] * s
+        return begin < limit and end > limit and bounds.rate * s > 0
+
+    def _enclose_overturning_time(self, ground: GroundPiece, step: Ball, *, passes: bool) -> None:
+        """Enclose the times at which members first reach the overturning angle, by a step's end."""
         begin, low, high = self.time, ZERO, step
-        assert self.overturning_time is not None  # noqa: S101
-        if rises and self.states.box()[0] * self.sign < self.corner.limit:
+        if passes:
             for _ in range(_NARROWINGS):
                 middle = ((low + high) / 2).mid()
                 rotation = advance(self.states, self.corner, ground, middle)[0].box()[0] * self.sign
@@ -303,8 +310,8 @@ class RockingProver:
                     high = middle
                 else:
                     break
-        first = begin + low if self.overturning_time[0] >= begin else self.overturning_time[0]
-        self.overturning_time = first, begin + high
+        earliest = begin + low if self.overturning_time is None else self.overturning_time[0]
+        self.overturning_time = earliest, begin + high
 
     def _apply_impact(
         self, states: SetOfStates, ground: GroundPiece, step: Ball, left: Ball, *, to_end: bool
@@ -360,9 +367,6 @@ class RockingProver:
         e, back = far.restitution, near.restitution
         lasting = energy < steep[0] and e * e * energy < steep[1] and e * back <= 1
         if lasting and rotation * self.sign < near.limit:
-            if self.overturning_time is not None:
-                message = "whether it passed its overturning angle is not resolved"
-                raise Undecided(message)
             return False
         tail = problem.time(self.interval, ZERO) - problem.time(problem.count, ZERO)
         if tail * problem.frequency > MAX_TIME_AFTER_MOTION:
@@ -394,7 +398,7 @@ def prove_block(
 
     def attempt(inputs: Deviations) -> tuple[Proof, list[float]]:
         problem = Problem.of(block, motion, slope, limits, scale, inputs, STILL_STEP)
-        prover = RockingProver(problem, callback, () if inputs.exact else inputs.centred())
+        prover = RockingProver(problem, callback, () if inputs.exact else problem.uncertain())
         prover.start(*start)
         return prove_verdict(prover, scale, _LAW), prover.states.influences()
 

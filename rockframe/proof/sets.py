@@ -114,8 +114,8 @@ def _joined_proof(decided: list[_Part], undecided: list[_Part]) -> Proof:
         for verdict in (SAFE, OVERTURNS)
     }
     verdict, reason, proofs = UNDECIDED, "", [part.proof for part in undecided[:1] or decided]
-    if 1.0 in shares.values():
-        verdict = decided[0].proof.verdict
+    if not undecided and len({proof.verdict for proof in every}) == 1:  # shares may be rounded
+        verdict = every[0].verdict
     elif len(every) == 1:
         reason = every[0].reason
     elif undecided:

@@ -5,14 +5,18 @@ import json
 import numpy as np
 import pytest
 from pages import DOCS, table
+from scipy.optimize import brentq
 
 pytest.importorskip("flint")
 
 import rockframe as rf
 from rockframe.errors import ComponentError
-from rockframe.proof.balls import bits
+from rockframe.proof.balls import bits, working_precision
+from rockframe.proof.problem import Deviations, Problem
 from rockframe.proof.sets import PRECISIONS, prove_for_set
-from rockframe.proof.verdict import EXACT, Proof
+from rockframe.proof.verdict import EXACT, Proof, Tolerances
+from rockframe.signals.motion import Incline
+from rockframe.system.bodies import OverturningAngles
 
 FAST = 1e-5  # of the scale, where runs with accuracy="fast" are right
 # H/B, R0, T, share of the motion upwards, eccentricity over B; safe at scale, overturns at scale
@@ -176,6 +180,34 @@ def test_a_set_of_angles_scales_and_restitutions_has_the_verdict_of_its_middle(s
         assert found.earliest < run.overturning_time < found.latest
 
 
+def test_shares_that_sum_to_one_by_rounding_are_no_proof():
+    """Each part is halved: the first half is safe, the second undecided."""
+    tried = []
+
+    def attempt(inputs):
+        tried.append(inputs)
+        verdict = "undecided" if len(tried) % 2 else "safe for ever"
+        return Proof(verdict, "a reason", 1.0, 1.0, 1e-20, 0, bits(), 1.0, "a law"), []
+
+    found = prove_for_set(attempt, Tolerances(scale=1e-3, parts=64))
+    assert (found.safe_share, found.parts) == (1.0, 64)
+    assert not found.decided
+
+
+def test_members_of_tiny_sets_are_within_their_deviations():
+    """The sum of a number and a tiny deviation has rounding errors as large as that."""
+    with working_precision(106):
+        inputs, _ = Deviations.within(1e-31, 0.0, 0.0).halves([])
+        problem = Problem.of(
+            system(4).assembly.model.system, half_sine().si, Incline(0.0, 9.81),
+            OverturningAngles(1.0, 1.0), 1.0, inputs, 0.1,
+        )  # fmt: skip
+        left = problem.left.restitution
+    with working_precision(212):
+        member = system(4).assembly.model.system.left.restitution + inputs.left_restitution
+        assert (left.mid() + problem.uncertain().left_restitution).contains(member)
+
+
 @pytest.mark.parametrize(
     ("change", "words"),
     [
@@ -208,6 +240,64 @@ def test_critical_scale_is_bracketed_from_any_start():
         assert found.safe < CASES[0][-1]
         assert found.overturns > CASES[0][-2]
         assert found.undecided == 0
+
+
+def prove_peak_at_overturning_angle(share, **options):
+    """Begin with a share more than the rate at which the block just reaches the angle.
+
+    Under 3 m/s^2, which turn it back, its energy is constant; then it comes to rest.
+    """
+    theta, leans = float(np.arctan(0.25)), 0.05  # at the start theta less a twentieth
+    work = 9.81 * (1.0 - np.cos(leans * theta)) + 3.0 * np.sin(leans * theta)
+    rate = float(np.sqrt(2.0 * 0.75 * work)) * (1.0 + share)
+    pull = np.zeros(701)
+    pull[:11] = 3.0
+    return rf.prove(
+        system(4, 1.0), rf.GroundMotion.from_arrays((pull, "m/s^2"), "0.02 s"),
+        initial=rf.InitialState(
+            rotation=f"{(1.0 - leans) * theta} rad", angular_velocity=f"{rate} rad/s"
+        ),
+        **options,
+    )  # fmt: skip
+
+
+@pytest.mark.parametrize(("share", "verdict"), [(-1e-9, "safe for ever"), (1e-9, "overturns")])
+def test_peak_at_overturning_angle_is_decided_though_block_comes_to_rest(share, verdict):
+    proof = prove_peak_at_overturning_angle(share)
+    assert proof.verdict == verdict
+    assert np.isnan(proof.latest) or proof.latest - proof.earliest < 1e-12
+
+
+def energy(corner, share):
+    """Return the potential energy over the inertia at a share of the overturning angle."""
+    heights = np.cos((1.0 - share) * corner.angle) - np.cos(corner.angle)
+    return 9.81 * corner.radius / corner.inertia * heights
+
+
+@pytest.mark.parametrize("surplus", [-1e-9, 1e-9])
+@pytest.mark.parametrize("sign", [-1, 1])
+def test_energy_decides_to_either_side_on_still_ground(sign, surplus):
+    """From rest on its far corner, over the near one, of which the crest is lower; or outwards."""
+    scene = system(4, 2.0, 0.1 * sign)
+    model = scene.assembly.model.system
+    near, far = (model.right, model.left)[::sign]
+    still = rf.GroundMotion.from_arrays((np.zeros(3), "m/s^2"), "0.01 s")
+    verdict = "overturns" if surplus > 0.0 else "safe for ever"
+    needed = energy(near, 1.0) * (1.0 + surplus) / near.restitution**2
+    share = brentq(lambda share: energy(far, share) - needed, 0.0, 1.0, xtol=1e-15)
+    leans = rf.InitialState(rotation=f"{-sign * share * far.angle!r} rad")
+    rate = float(sign * np.sqrt(2.0 * (energy(near, 1.0) * (1.0 + surplus) - energy(near, 0.5))))
+    moves = rf.InitialState(
+        rotation=f"{0.5 * sign * near.angle!r} rad", angular_velocity=f"{rate!r} rad/s"
+    )
+    for initial in (leans, moves):
+        assert rf.prove(scene, still, initial=initial).verdict == verdict
+
+
+def test_set_some_of_whose_members_pass_overturning_angle_is_undecided():
+    proof = prove_peak_at_overturning_angle(0.0, scale_tolerance=1e-6, parts=1)
+    assert not proof.decided
+    assert proof.reason == "whether it passed its overturning angle is not resolved"
 
 
 def test_motion_without_critical_scale_is_refused():
@@ -243,6 +333,19 @@ def test_restitution_tolerance_on_pads_widens_overturning_time():
     assert proof.overturns
     assert proof.impacts == 1
     assert 1e-9 < proof.latest - proof.earliest < 1e-4
+
+
+@pytest.mark.filterwarnings("ignore:restitution 1 exceeds")
+def test_restitutions_above_one_on_pads_are_undecided():
+    """By energy they could not be proved safe."""
+    block = rf.Block.from_size(radius="2 m", slenderness=4, mass="1 t")
+    scene = rf.System(
+        block, rf.TwoSpringSupport(frequency_ratio=20, damping_ratio=0.1, restitution=1.0)
+    )
+    motion = rf.GroundMotion.from_arrays((np.zeros(3), "m/s^2"), "0.01 s")
+    assert rf.prove(scene, motion).verdict == "safe for ever"
+    proof = rf.prove(scene, motion, restitution_tolerance=1e-6, parts=1)
+    assert proof.reason == "a restitution above 1 may raise the energy"
 
 
 def test_documented_table_of_proved_sets_matches_data():

@@ -69,7 +69,7 @@ def enclosures(name, *, change=lambda block: block, **tolerances):
         block = change(block_numbers(block))
         inputs = Deviations.within(*(tolerances.get(one, 0.0) for one in SETS))
         problem = Problem.of(block, motion.si, Incline(0.0, 9.81), far, 1.0, inputs, 0.05)
-        prover = RockingProver(problem, callback, [] if inputs.exact else inputs.centred())
+        prover = RockingProver(problem, callback, [] if inputs.exact else problem.uncertain())
         while prover.interval < KNOTS:
             prover._follow_rest() if prover.sign == 0 else prover._follow_rocking()
     assert boxes

@@ -12,6 +12,7 @@ from rockframe.proof.balls import UNIT, ball, working_precision
 from rockframe.proof.bounces import Instant, UpliftState, follow_bounces
 from rockframe.proof.impacts import ImpactEnclosure
 from rockframe.proof.problem import Deviations, Problem
+from rockframe.signals.motion import Motion, Signal
 
 STEP = 0.02
 BLOCKS = {
@@ -176,3 +177,79 @@ def test_jumping_ground_is_detected_and_widens_speed_bound():
         corner = straight.right
         assert after**2 >= 2 * HEIGHT * corner.ratio * 0.5
         assert after**2 < 4 * HEIGHT * corner.ratio * 0.5
+
+
+def test_uplift_by_jump_of_ground_is_not_followed():
+    """The ground jumps to 1.6 times the acceleration of uplift, and rises further."""
+    system = rf.System(BLOCKS["symmetric"], gravity="9.81 m/s^2").assembly
+    pieces = np.zeros((6, 6))
+    pieces[3:, 0], pieces[3:, 1] = [-4.0, -4.2, -4.4], -0.2
+    motion = Motion(Signal(STEP, np.append(pieces[:, 0], -4.6), pieces))
+    with working_precision(106):
+        problem = Problem.of(
+            system.model.system, motion, system.options.slope,
+            system.setting.overturning_angles, 1.0, Deviations(), 0.1,
+        )  # fmt: skip
+        start = Instant(2, ball(0.0199))
+        assert follow_bounces(problem, start, ball(1e-9), ball(1e-5)) is None
+
+
+def test_least_restoring_acceleration_is_that_of_the_weaker_side(monkeypatch):
+    """They differ by less than floats show."""
+    system, found = rf.System(BLOCKS["symmetric"], gravity="9.81 m/s^2").assembly, []
+    with working_precision(106):
+        most, least = ball(2) + ball(2) ** -80, ball(2)
+    for stronger in (1, -1):
+
+        def of(_, sign, *__, stronger=stronger):
+            return bounces.RestoringAcceleration(most if sign == stronger else least, most, ball(0))
+
+        with working_precision(106):
+            monkeypatch.setattr(bounces.RestoringAcceleration, "of", of)
+            problem = Problem.of(
+                system.model.system, GROUNDS["still"].si, system.options.slope,
+                system.setting.overturning_angles, 1.0, Deviations(), 0.1,
+            )  # fmt: skip
+            bounds = bounces._Bounds(problem, ball(HEIGHT), ball(SPEED))
+            found.append(bounds.after_window(problem.ground(0), ball(STEP / 8)))
+    first, second = found
+    assert first.remaining_speed == second.remaining_speed
+
+
+@pytest.mark.parametrize(
+    ("first", "last", "rotation", "rate"),
+    [(1.05, 1.05, 0.0, 0.01), (0.75, 0.6, 1e-3, 0.0), (0.6, 0.75, 1e-3, 0.0)],
+    ids=["the ground lifts it", "it restores more and more", "it restores less and less"],
+)
+def test_bounds_after_a_window_are_those_of_a_member(first, last, rotation, rate):
+    """Ground accelerations are shares of that which lifts the block; no impact occurs."""
+    system, span = rf.System(BLOCKS["symmetric"], gravity="9.81 m/s^2"), 0.025
+    assembly = system.assembly
+    corner = assembly.model.system.right
+    across = -9.81 * corner.tangent * np.array([first, last])
+    motion = rf.GroundMotion.from_arrays((across, "m/s^2"), f"{span} s")
+    run = system.simulate(
+        motion, duration=f"{span} s", accuracy="reference",
+        initial=rf.InitialState(rotation=f"{rotation} rad", angular_velocity=f"{rate} rad/s"),
+    )  # fmt: skip
+
+    def speed(rotation, rate, along):
+        """Return u: the rate, and what falling to the ground would add."""
+        lean = corner.angle - rotation
+        rise, shift = np.cos(lean) - np.cos(corner.angle), np.sin(lean) - np.sin(corner.angle)
+        work = corner.radius / corner.inertia * (9.81 * rise - along * shift)
+        return float(np.sqrt(rate**2 + 2.0 * max(work, 0.0)))
+
+    with working_precision(106):
+        problem = Problem.of(
+            assembly.model.system, motion.si, assembly.options.slope,
+            assembly.setting.overturning_angles, 1.0, Deviations(), 0.1,
+        )  # fmt: skip
+        start = ball(speed(rotation, rate, across[0]))
+        window = ball(span)
+        bounds = bounces._Bounds(problem, ball(rotation), start)
+        bounds = bounds.after_window(problem.ground(0).at(UNIT * window), window)
+        ends = float(run.rotation[-1]), float(run.angular_velocity[-1])
+        assert float(bounds.height) >= ends[0] > 0.0
+        assert float(bounds.remaining_speed) >= corner.restitution * speed(*ends, across[1])
+        assert float(bounds.speed) >= abs(ends[1])

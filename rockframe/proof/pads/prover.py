@@ -313,6 +313,8 @@ class PadProver:
     def _is_safe(self) -> bool:
         """Prove by energy that the block stands for ever, :eq:`eq-proof-pads-energy`."""
         pads, state = self.pads, self.states.box(self.weights)
+        lossy = all(restitution <= 1 for restitution in pads.restitutions)
+        require(lossy, "a restitution above 1 may raise the energy")
         rotation, rate, height, speed, sway = state
         if not self.contacts.in_flight:
             sway = arm(pads, self.contacts, rotation) * rate
