@@ -108,8 +108,8 @@ def test_fast_on_coarse_records():
     record = rf.GroundMotion.read(record_path("PEERSMD_CHICHI_TCU128-N.AT2"))
     samples = 1.5 * record.window("30 s", "90 s").si.horizontal.samples
     block = rf.Block(width="4 m", height="18 m", mass="99 t")
-    on_pads = numbers_in(PAGE, "errors of the history of #, #, # and # (there,")
-    on_rigid = numbers_in(PAGE, "with one step per sample, #, #, # and #. Choose")
+    on_pads = numbers_in(PAGE, "errors of the history of #, #, # and # on pads")
+    on_rigid = numbers_in(PAGE, "with one step per sample, errors are #, #, # and #")
     for system, errors in ((rf.System(block, PADS), on_pads), (rf.System(block), on_rigid)):
         for every, error in zip((1, 2, 4, 8), errors, strict=True):
             motion = rf.GroundMotion.from_arrays((samples[::every], "m/s^2"), f"{0.005 * every} s")

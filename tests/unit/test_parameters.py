@@ -195,7 +195,7 @@ class TestConstructor:
 
     def test_docstring_documents_every_parameter(self, kind):
         text = inspect.getdoc(kind)
-        assert text.count("Parameters\n----------") == 1
+        assert text.count("\nParameters\n----------") == 1
         for name, declared in kind._declared.items():
             assert f"\n{name} : " in text
             if declared.unit:

@@ -6,7 +6,7 @@ import pytest
 import rockframe as rf
 from rockframe.errors import ComponentError, RecordWarning
 from rockframe.motion import GroundMotion
-from rockframe.simulation.provenance import motion_words
+from rockframe.motion.display import motion_words
 
 RNG = np.random.default_rng(7)
 NORTH, EAST = RNG.normal(size=(2, 400)) * np.sin(np.pi * np.arange(400) / 399.0)
