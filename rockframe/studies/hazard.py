@@ -10,7 +10,14 @@ import xarray as xr
 from numpy.polynomial.legendre import leggauss
 
 from rockframe.arguments import checked_dataset, checked_function
-from rockframe.errors import ComponentError, ModelWarning, SchemaError, short_repr, warn
+from rockframe.errors import (
+    ComponentError,
+    ModelWarning,
+    SchemaError,
+    UnitsError,
+    short_repr,
+    warn,
+)
 from rockframe.results.schema import build_dataset, with_labels, with_variables
 from rockframe.results.variables.analyses import FragilityStatus
 from rockframe.results.variables.variable import unit_of, unit_suffix_of
@@ -82,7 +89,8 @@ def annual_rate(
         ([0.1, 0.2, 0.5], "g_0"), "rate": [1e-2, 3e-3, 2e-4]}``, or with ``"probability"`` and
         ``"years"`` instead of ``"rate"``, for the probability of at least one exceedance in that
         many years. Or a DataArray of rates whose only dimension has the intensities, with their
-        unit. Or a function of an array of intensities in SI units.
+        unit. Or a function of an array of intensities in SI units. Rates without a unit are numbers
+        a year [year^-1].
     between : (sequence, unit), Quantity or sequence of str, optional
         Range of intensities in which a hazard given as a function is valid.
 
@@ -175,7 +183,7 @@ def read_hazard(value: object, measure: xr.DataArray, between: object) -> Hazard
         (dim,) = value.dims
         pair = value[dim].to_numpy(), unit_of(value[dim].attrs)
         values = _read_intensities(pair, name, unit)
-        rates = value.to_numpy().astype(np.float64)
+        rates = _read_numbers(value, "rate", Unit.PER_YEAR)
     elif isinstance(value, Mapping):
         table = cast("Mapping[str, Any]", value)
         if set(table) not in map(set, _COLUMNS):
@@ -214,12 +222,26 @@ def _read_intensities(value: object, name: str, unit: str) -> Array:
     return read_in_unit_of(name, unit, value, "intensity", owner=_OWNER)
 
 
+def _read_numbers(value: object, name: str, unit: Unit) -> Array:
+    """Return plain numbers, or values with a unit of the kind of `unit` as numbers in it."""
+    held = value
+    if isinstance(value, xr.DataArray):
+        given = unit_of(value.attrs)
+        held = value.to_numpy() if given == Unit.ONE else (value.to_numpy(), given)
+    numbers, own_unit = read_free_values(held, name, owner=_OWNER, expected=unit)
+    if own_unit not in (unit, Unit.ONE):
+        kinds = f"plain numbers{'' if unit == Unit.ONE else f' or values in {unit}'}"
+        msg = f"{_OWNER}: {name} needs {kinds}, got {short_repr(value)}"
+        raise UnitsError(msg)
+    return np.asarray(numbers, dtype=np.float64)
+
+
 def _read_rates(table: Mapping[str, Any]) -> Array:
     """Return rates; from probabilities in some years by a Poisson process."""
     if "rate" in table:
-        return np.asarray(table["rate"], dtype=np.float64)
+        return _read_numbers(table["rate"], "rate", Unit.PER_YEAR)
     years = to_ratio(table["years"], owner=_OWNER, name="years", condition=POSITIVE, example="50")
-    chance = np.asarray(table["probability"], dtype=np.float64)
+    chance = _read_numbers(table["probability"], "probability", Unit.ONE)
     if np.any(chance <= 0.0) or np.any(chance >= 1.0):
         given = short_repr(chance.tolist())
         msg = f"{_OWNER}: probabilities must be above 0 and below 1, got {given}"

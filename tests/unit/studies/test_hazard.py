@@ -191,6 +191,34 @@ def test_hazard_accepts_probabilities_and_dataarrays(curve):
     assert rf.annual_rate(curve, array).annual_rate.item() == pytest.approx(one, rel=1e-12)
 
 
+@pytest.mark.parametrize(
+    ("unit", "size"), [("year^-1", 1.0), ("1/s", 365.25 * 86400.0), ("percent", 0.01), ("1", 1.0)]
+)
+def test_the_unit_of_hazard_rates_counts(curve, unit, size):
+    rates = RATES / size
+    array = xr.DataArray(
+        rates, dims="x", coords={"x": ("x", VALUES * G, {"units": "m/s^2"})}, attrs={"units": unit}
+    )
+    expected = rf.annual_rate(curve, TABLE).annual_rate
+    hazards = [array, {**TABLE, "rate": array}]
+    hazards += [] if unit == "1" else [{**TABLE, "rate": (rates, unit)}]
+    for hazard_curve in hazards:
+        found = rf.annual_rate(curve, hazard_curve).annual_rate
+        assert found.item() == pytest.approx(expected.item(), rel=1e-12)
+    assert expected.attrs["units"] == "year^-1"
+
+
+def test_probabilities_of_hazard_may_be_percentages(curve):
+    chances = 1.0 - np.exp(-50.0 * RATES[1:])
+    expected, found = (
+        rf.annual_rate(
+            curve, {"intensity": (VALUES[1:], "g_0"), "probability": given, "years": 50}
+        ).annual_rate
+        for given in (chances, [f"{100.0 * chance!r} %" for chance in chances.tolist()])
+    )
+    assert found.item() == pytest.approx(expected.item(), rel=1e-12)
+
+
 def test_unit_g_means_gravity_for_accelerations(curve):
     """In other arguments g is the gram."""
     counted = rf.fragility({**COUNTS, "intensity": (LEVELS[0], "g")}, "PGA")
@@ -284,9 +312,14 @@ def test_rate_beyond_the_hazard_table_warns(curve):
             ({"intensity": (values, "g_0"), "rate": rates}, ComponentError, "above zero rise")
             for values, rates in (
                 ([0.0, 0.1], [1e-2, 1e-3]), ([0.2, 0.1], [1e-2, 1e-3]), ([0.1, 0.2], [1e-2, 0.0]),
-                ([0.1, 0.2], [np.inf, 1e-3]), ([0.1, 0.2], [1e-2, 1e-2]),
+                ([0.1, 0.2], [1e-2, 1e-2]),
             )
         ),
+        ({"intensity": ([0.1, 0.2], "g_0"), "rate": [np.inf, 1e-3]}, ComponentError, "be finite"),
+        ({**TABLE, "rate": (RATES, "m")}, UnitsError, "rate needs plain numbers or values in year"),
+        ({**TABLE, "rate": ["a", "b"]}, UnitsError, "rate needs plain numbers or values in year"),
+        ({"intensity": (VALUES, "g_0"), "probability": (RATES, "1/year"), "years": 50}, UnitsError,
+         "probability needs plain numbers, got"),
         (np.exp, ComponentError, "needs between"),
         (3.0, ComponentError, "must be a table"),
     ],
