@@ -7,13 +7,12 @@ from typing import Final, NamedTuple
 import numpy as np
 import xarray as xr
 
-from rockframe.results.schema import SCHEMA
+from rockframe.results.schema import SCHEMA, labels_in_unit
 from rockframe.results.variables.analyses import LIMIT_STATE, FragilityStatus
 from rockframe.results.variables.variable import unit_suffix_of
 from rockframe.signals.arrays import AnyArray, Array
 from rockframe.studies.fragility.likelihood import Bands
 from rockframe.studies.intensities import PERIOD_ATTRIBUTE, measure_words
-from rockframe.studies.sweeps.axes import labels_in_unit
 
 POOLED_ATTRIBUTE: Final = "pooled"
 """Attribute that names the structures that were treated as one."""
