@@ -31,6 +31,7 @@ from rockframe.suggestions import with_hints
 from rockframe.units import POSITIVE, Unit, check_attached_unit, to_ratio
 
 _OWNER: Final = "annual_rate"
+_REFERENCES: Final = "Cornell (1996), 11th World Conf. Earthquake Eng., paper 2122"
 _COLUMNS: Final = ("intensity", "rate"), ("intensity", "probability", "years")
 _MAX_STEP: Final = 0.02
 """Longest part of an integral, as a logarithm of intensity; a polynomial fits well within it."""
@@ -145,7 +146,7 @@ def annual_rate(
     arrays = {name: np.array([row[name] for row in rows]) for name in rows[0]}
     dataset = build_dataset(
         {name: array.reshape((*status.shape, *array.shape[1:])) for name, array in arrays.items()},
-        {}, over=dims, title="Annual rate of exceeding limit states",
+        {"references": _REFERENCES}, over=dims, title="Annual rate of exceeding limit states",
         source="integral of a fragility over a hazard curve",
     )  # fmt: skip
     labels = {

@@ -9,6 +9,7 @@ import xarray as xr
 from numpy.typing import NDArray
 
 from rockframe.errors import ComponentError, RecordWarning, SchemaError, collected_warnings, warn
+from rockframe.measures.common import OSCILLATOR_REFERENCE
 from rockframe.motion import GroundMotion
 from rockframe.motion.operations.matching import USUAL_PERIODS, Target
 from rockframe.motion.quantities import ArrayLike
@@ -136,6 +137,7 @@ def scaled_set(
         },
         {
             **candidates.attributes,
+            "references": OSCILLATOR_REFERENCE,
             "least_factor": low,
             "greatest_factor": high,
             "factors_at_a_bound": int(at_bound.sum()),
