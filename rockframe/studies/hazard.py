@@ -45,7 +45,12 @@ _QUANTILES: Final = (0.05, 0.5, 0.95)
 _WARNING_SHARE: Final = 0.01
 """Share of the rate beyond the hazard curve above which a warning is given [1]."""
 _EXTRAPOLATION_RANGE: Final = 12.0
-"""Range over which the ends of the hazard curve are extrapolated, as a logarithm of intensity."""
+"""Least range over which the ends of the hazard curve are extrapolated, as a logarithm of
+intensity."""
+_NEGLIGIBLE: Final = 30.0
+"""Fall of the rate, as a logarithm, after which the rest is negligible."""
+_GREATEST_EXPONENT: Final = 600.0
+"""Greatest exponent of a power law over its range, whose exponential is still finite."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -61,13 +66,20 @@ class HazardCurve:
 
     def extrapolations(self) -> tuple["HazardCurve", "HazardCurve"]:
         """Return extrapolations of the curve below and above, by its first and last power law."""
-        reach = math.exp(_EXTRAPOLATION_RANGE)
-        first, last = np.minimum(self.slopes()[[0, -1]] * _EXTRAPOLATION_RANGE, 600.0)
-        below = self.rates[0] * np.array([math.exp(first), 1.0])
-        above = self.rates[-1] * np.array([1.0, math.exp(-last)])
+        first, last = self.slopes()[[0, -1]].tolist()
+        # above, a flat curve falls slowly
+        reach = min(max(_EXTRAPOLATION_RANGE, _NEGLIGIBLE / last), _GREATEST_EXPONENT)
+        growth, fall = (
+            min(slope * length, _GREATEST_EXPONENT)
+            for slope, length in ((first, _EXTRAPOLATION_RANGE), (last, reach))
+        )
+        below = self.rates[0] * np.array([math.exp(growth), 1.0])
+        above = self.rates[-1] * np.array([1.0, math.exp(-fall)])
         return (
-            HazardCurve(self.intensities[0] / np.array([reach, 1.0]), below),
-            HazardCurve(self.intensities[-1] * np.array([1.0, reach]), above),
+            HazardCurve(
+                self.intensities[0] / np.array([math.exp(_EXTRAPOLATION_RANGE), 1.0]), below
+            ),
+            HazardCurve(self.intensities[-1] * np.array([1.0, math.exp(reach)]), above),
         )
 
 

@@ -68,6 +68,18 @@ def test_steep_hazard_and_wide_dispersion_match_quadrature(curve, exponent, spre
     assert (found.rate_share >= 0.0).all()
 
 
+@pytest.mark.parametrize("exponent", [0.06, 0.2, 0.7, 3.0])
+def test_rate_above_a_flat_hazard_curve_is_the_closed_form(curve, exponent):
+    median, spread, end = curve.median_intensity.item(), curve.dispersion.item(), 20.0
+    table = {"intensity": ([0.1, end], "m/s^2"), "rate": [1e-3, 1e-3 * (end / 0.1) ** -exponent]}
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", ModelWarning)
+        found = rf.annual_rate(curve, table).unreached_rate_above.item()
+    eta, shift = math.log(end / median) / spread, exponent * spread
+    share = (end / median) ** exponent * math.exp(0.5 * shift**2) * ndtr(-eta - shift) + ndtr(eta)
+    assert found == pytest.approx(share * table["rate"][1], rel=1e-9)
+
+
 def test_median_beyond_the_table_gives_zero_rate(curve):
     far = curve.assign(
         median_intensity=curve.median_intensity * 1e3, dispersion=curve.dispersion * 0.0 + 1e-3
