@@ -127,13 +127,13 @@ def test_hazard_table_integral_matches_quadrature(curve):
 
 
 def in_g(curve):
-    """Return a fragility with accelerations in g."""
-    names = [
-        str(name) for name, one in curve.variables.items() if one.attrs.get("units") == "m s^-2"
-    ]
+    """Return a fragility with accelerations in g, and ratios in per cent."""
+    others = {"m s^-2": ("g_0", G), "1": ("percent", 0.01)}
     found = curve.copy(deep=True)
-    for name in names:
-        found[name] = (curve[name] / G).assign_attrs(curve[name].attrs, units="g_0")
+    for name, one in curve.variables.items():
+        if one.dtype.kind == "f" and one.attrs.get("units") in others:
+            unit, size = others[one.attrs["units"]]
+            found[name] = (curve[name] / size).assign_attrs(one.attrs, units=unit)
     return found
 
 
@@ -143,12 +143,17 @@ def test_a_fragility_in_other_units_has_the_same_rate(curve):
     name = "peak_ground_acceleration"
     for one in (other, curve.assign_coords({name: other[name]})):  # or only its coordinate
         assert rf.annual_rate(one, TABLE).annual_rate.item() == pytest.approx(rate)
+    expected, found = (rf.annual_rate(one, TABLE) for one in (curve, other))
+    upper = "annual_rate_upper_bound"  # from the probabilities
+    assert found[upper].item() == pytest.approx(expected[upper].item(), rel=1e-9)
 
 
 def test_exports_do_not_depend_on_units(curve, tmp_path):
     other = in_g(curve)
-    exported = rf.export.to_pelicun(other, "x")["LS1-Theta_0"].item()
-    assert exported == pytest.approx(curve.median_intensity.item() / G, rel=1e-12)
+    exported = rf.export.to_pelicun(other, "x")
+    parameters = exported["LS1-Theta_0"].item(), exported["LS1-Theta_1"].item()
+    expected = curve.median_intensity.item() / G, curve.dispersion.item()
+    assert parameters == pytest.approx(expected, rel=1e-12)
     files = [
         rf.export.to_openquake({"x": one}, tmp_path / f"{k}.xml").read_text()
         for k, one in enumerate((curve, other))
