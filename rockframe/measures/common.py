@@ -96,9 +96,12 @@ def by_label(motions: Mapping[Any, Any], *, owner: str) -> dict[str, Any]:
     return with_string_keys(motions, owner=owner)
 
 
+OSCILLATOR_REFERENCE: Final = "Nigam and Jennings (1969), Bull. Seism. Soc. Am. 59, 909-922"
+"""Reference of spectra."""
+
 REFERENCES: Final = (
-    "Nigam and Jennings (1969), Bull. Seism. Soc. Am. 59, 909-922; Arias (1970), in Seismic Design "
-    "for Nuclear Power Plants; Rathje et al. (2004), Earthquake Spectra 20, 119-144"
+    f"{OSCILLATOR_REFERENCE}; Arias (1970), in Seismic Design for Nuclear Power Plants; Rathje et "
+    "al. (2004), Earthquake Spectra 20, 119-144"
 )
 """References of spectra and intensity measures; all are on the page "Response spectra"."""
 

@@ -14,6 +14,7 @@ import xarray as xr
 from rockframe.arguments import json_attribute
 from rockframe.errors import RockframeWarning, SchemaError, first_along
 from rockframe.motion import GroundMotion
+from rockframe.results.schema import in_units_of_schema, labels_in_unit
 from rockframe.shared_arguments import (
     Argument,
     completed_docstring,
@@ -21,7 +22,6 @@ from rockframe.shared_arguments import (
     with_section,
 )
 from rockframe.simulation.system import System
-from rockframe.studies.sweeps.axes import in_units_of_schema, labels_in_unit
 from rockframe.studies.sweeps.case import SweepCase, system_of_case
 from rockframe.suggestions import with_hints
 from rockframe.units import POSITIVE, Unit, to_ratio

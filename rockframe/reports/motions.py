@@ -20,7 +20,7 @@ from rockframe.studies.sweeps.case import known_motions
 from rockframe.suites import MotionSuite, TargetSpectrum
 from rockframe.suites.candidates import default_periods
 from rockframe.suites.columns import column_value, is_missing
-from rockframe.suites.scaling import compared_target
+from rockframe.suites.scaling import compared_periods, compared_target
 from rockframe.units import Unit
 from rockframe.units.display import DisplayUnits, display_units, with_superscripts
 
@@ -64,7 +64,7 @@ def read_target(value: object, motions: object, owner: str) -> TargetComparison 
     if isinstance(value, xr.Dataset) and "target_spectral_acceleration" in value:
         target = compared_target(value)
         if target is not None:
-            return TargetComparison(target, value["period"].to_numpy())
+            return TargetComparison(target, compared_periods(value))
     msg = (
         f"{owner}: target must be a TargetSpectrum, or the result of suite.scaling_to or "
         f"suite.selection_for for one at several periods, got {short_repr(value)}"

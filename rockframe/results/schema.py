@@ -16,6 +16,7 @@ from rockframe.errors import SchemaError
 from rockframe.results.variables import analyses, bodies, motions, requests, runs, studies
 from rockframe.results.variables.variable import Variable
 from rockframe.signals.arrays import AnyArray
+from rockframe.units import Measure, Unit, decimal_products, read_number
 from rockframe.version import __version__
 
 _TABLES: Final = (
@@ -170,6 +171,30 @@ def without_fill_values(dataset: xr.Dataset) -> xr.Dataset:
     for name in dataset.coords:
         dataset.variables[name].encoding["_FillValue"] = None
     return dataset
+
+
+def labels_in_unit(labels: xr.DataArray, unit: str | None, *, owner: str) -> xr.DataArray:
+    """Return the labels of an axis in its unit, if a user has converted them to another one."""
+    current = labels.attrs.get("units")
+    if unit is None or current in (None, unit):
+        return labels
+    measure = Measure("a value", Unit(unit), f"1 {unit}")
+    factor = read_number(f"1 {current}", measure, owner=owner, name=str(labels.name))
+    numbers = decimal_products(np.ravel(labels).astype(float).tolist(), factor)
+    converted, attributes = np.reshape(numbers, labels.shape), {**labels.attrs, "units": unit}
+    return xr.DataArray(converted, labels.coords, labels.dims, labels.name, attributes)
+
+
+def in_units_of_schema(dataset: xr.Dataset, *, owner: str) -> xr.Dataset:
+    """Return variables in their units, if a user has converted them, for example for a figure."""
+    converted = {
+        name: labels_in_unit(dataset[name], SCHEMA[str(name)].unit, owner=owner).variable
+        for name in dataset.variables
+        if name in SCHEMA and name not in dataset.indexes
+    }
+    # such as the places of points
+    coords = {name: converted.pop(name) for name in list(converted) if name in dataset.coords}
+    return dataset.assign(converted).assign_coords(coords)
 
 
 def checked_results(values: Mapping[str, Any], sizes: Mapping[str, int]) -> dict[str, NDArray[Any]]:

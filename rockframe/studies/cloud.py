@@ -43,6 +43,7 @@ from rockframe.suggestions import with_hints
 from rockframe.units import POSITIVE, RatioLike
 
 _OWNER: Final = "cloud_analysis"
+_REFERENCES: Final = "Jalayer et al. (2017), Earthquake Engng. Struct. Dyn. 46, 2639-2663"
 _CURVE_POINTS: Final = 101
 
 
@@ -222,7 +223,8 @@ def _cloud_dataset(
             "cloud_intensity": np.exp(cloud.logs),
             "cloud_response": cloud.responses,
         },
-        {"bands": "posterior", "trials": "cloud", "confidence": confidence},
+        {"bands": "posterior", "trials": "cloud", "confidence": confidence,
+         "references": _REFERENCES},
         title="Cloud analysis", source="least squares and logistic regression",
     )  # fmt: skip
     status, *of_curves = zip(*curves, strict=True)

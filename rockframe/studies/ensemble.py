@@ -23,6 +23,7 @@ from rockframe.suggestions import with_hints
 from rockframe.units import RatioLike
 
 _OWNER: Final = "ensemble_statistics"
+_REFERENCES: Final = "Clopper and Pearson (1934), Biometrika 26, 404-413"
 
 
 @with_hints()
@@ -123,6 +124,7 @@ def ensemble_statistics(
         {
             "variable": str(values.name),
             "confidence": requested,
+            "references": _REFERENCES,
             "verdict": f"{len(ordered)} members{missing}; {bounds}",
         },
         title="Statistics of an ensemble",

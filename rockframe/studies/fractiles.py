@@ -24,6 +24,7 @@ from rockframe.suggestions import with_hints
 from rockframe.units import Measure, RatioLike, Unit, to_ratio, to_si_values
 
 _OWNER: Final = "fractile_curves"
+_REFERENCES: Final = "Vamvatsikos and Cornell (2004), Earthquake Spectra 20, 523-553"
 _CURVE_POINTS: Final = 201
 """Number of intensities, and of levels of the response, of the curves by default."""
 _LEVEL_DIM: Final = "response_level"
@@ -122,7 +123,9 @@ def fractile_curves(
     reached = np.stack([curve.first_intensities(requested) for curve in curves])
     name = str(measure.name)
     title = "Fractile curves of scaled motions"
-    dataset = build_dataset({}, {}, title=title, source="runs of scaled motions")
+    dataset = build_dataset(
+        {}, {"references": _REFERENCES}, title=title, source="runs of scaled motions"
+    )
     for variable, value, over in (
         ("motion_response", responses, (MOTION, name)),
         ("response_fractile", fractiles_of(responses, shares), ("quantile", name)),

@@ -10,7 +10,14 @@ import xarray as xr
 from numpy.polynomial.legendre import leggauss
 
 from rockframe.arguments import checked_dataset, checked_function
-from rockframe.errors import ComponentError, ModelWarning, SchemaError, short_repr, warn
+from rockframe.errors import (
+    ComponentError,
+    ModelWarning,
+    SchemaError,
+    UnitsError,
+    short_repr,
+    warn,
+)
 from rockframe.results.schema import build_dataset, with_labels, with_variables
 from rockframe.results.variables.analyses import FragilityStatus
 from rockframe.results.variables.variable import unit_of, unit_suffix_of
@@ -24,6 +31,7 @@ from rockframe.suggestions import with_hints
 from rockframe.units import POSITIVE, Unit, check_attached_unit, to_ratio
 
 _OWNER: Final = "annual_rate"
+_REFERENCES: Final = "Cornell (1996), 11th World Conf. Earthquake Eng., paper 2122"
 _COLUMNS: Final = ("intensity", "rate"), ("intensity", "probability", "years")
 _MAX_STEP: Final = 0.02
 """Longest part of an integral, as a logarithm of intensity; a polynomial fits well within it."""
@@ -37,7 +45,12 @@ _QUANTILES: Final = (0.05, 0.5, 0.95)
 _WARNING_SHARE: Final = 0.01
 """Share of the rate beyond the hazard curve above which a warning is given [1]."""
 _EXTRAPOLATION_RANGE: Final = 12.0
-"""Range over which the ends of the hazard curve are extrapolated, as a logarithm of intensity."""
+"""Least range over which the ends of the hazard curve are extrapolated, as a logarithm of
+intensity."""
+_NEGLIGIBLE: Final = 30.0
+"""Fall of the rate, as a logarithm, after which the rest is negligible."""
+_GREATEST_EXPONENT: Final = 600.0
+"""Greatest exponent of a power law over its range, whose exponential is still finite."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -53,13 +66,20 @@ class HazardCurve:
 
     def extrapolations(self) -> tuple["HazardCurve", "HazardCurve"]:
         """Return extrapolations of the curve below and above, by its first and last power law."""
-        reach = math.exp(_EXTRAPOLATION_RANGE)
-        first, last = np.minimum(self.slopes()[[0, -1]] * _EXTRAPOLATION_RANGE, 600.0)
-        below = self.rates[0] * np.array([math.exp(first), 1.0])
-        above = self.rates[-1] * np.array([1.0, math.exp(-last)])
+        first, last = self.slopes()[[0, -1]].tolist()
+        # above, a flat curve falls slowly
+        reach = min(max(_EXTRAPOLATION_RANGE, _NEGLIGIBLE / last), _GREATEST_EXPONENT)
+        growth, fall = (
+            min(slope * length, _GREATEST_EXPONENT)
+            for slope, length in ((first, _EXTRAPOLATION_RANGE), (last, reach))
+        )
+        below = self.rates[0] * np.array([math.exp(growth), 1.0])
+        above = self.rates[-1] * np.array([1.0, math.exp(-fall)])
         return (
-            HazardCurve(self.intensities[0] / np.array([reach, 1.0]), below),
-            HazardCurve(self.intensities[-1] * np.array([1.0, reach]), above),
+            HazardCurve(
+                self.intensities[0] / np.array([math.exp(_EXTRAPOLATION_RANGE), 1.0]), below
+            ),
+            HazardCurve(self.intensities[-1] * np.array([1.0, math.exp(reach)]), above),
         )
 
 
@@ -82,7 +102,8 @@ def annual_rate(
         ([0.1, 0.2, 0.5], "g_0"), "rate": [1e-2, 3e-3, 2e-4]}``, or with ``"probability"`` and
         ``"years"`` instead of ``"rate"``, for the probability of at least one exceedance in that
         many years. Or a DataArray of rates whose only dimension has the intensities, with their
-        unit. Or a function of an array of intensities in SI units.
+        unit. Or a function of an array of intensities in SI units. Rates without a unit are numbers
+        a year [year^-1].
     between : (sequence, unit), Quantity or sequence of str, optional
         Range of intensities in which a hazard given as a function is valid.
 
@@ -137,7 +158,7 @@ def annual_rate(
     arrays = {name: np.array([row[name] for row in rows]) for name in rows[0]}
     dataset = build_dataset(
         {name: array.reshape((*status.shape, *array.shape[1:])) for name, array in arrays.items()},
-        {}, over=dims, title="Annual rate of exceeding limit states",
+        {"references": _REFERENCES}, over=dims, title="Annual rate of exceeding limit states",
         source="integral of a fragility over a hazard curve",
     )  # fmt: skip
     labels = {
@@ -175,7 +196,7 @@ def read_hazard(value: object, measure: xr.DataArray, between: object) -> Hazard
         (dim,) = value.dims
         pair = value[dim].to_numpy(), unit_of(value[dim].attrs)
         values = _read_intensities(pair, name, unit)
-        rates = value.to_numpy().astype(np.float64)
+        rates = _read_numbers(value, "rate", Unit.PER_YEAR)
     elif isinstance(value, Mapping):
         table = cast("Mapping[str, Any]", value)
         if set(table) not in map(set, _COLUMNS):
@@ -214,12 +235,26 @@ def _read_intensities(value: object, name: str, unit: str) -> Array:
     return read_in_unit_of(name, unit, value, "intensity", owner=_OWNER)
 
 
+def _read_numbers(value: object, name: str, unit: Unit) -> Array:
+    """Return plain numbers, or values with a unit of the kind of `unit` as numbers in it."""
+    held = value
+    if isinstance(value, xr.DataArray):
+        given = unit_of(value.attrs)
+        held = value.to_numpy() if given == Unit.ONE else (value.to_numpy(), given)
+    numbers, own_unit = read_free_values(held, name, owner=_OWNER, expected=unit)
+    if own_unit not in (unit, Unit.ONE):
+        kinds = f"plain numbers{'' if unit == Unit.ONE else f' or values in {unit}'}"
+        msg = f"{_OWNER}: {name} needs {kinds}, got {short_repr(value)}"
+        raise UnitsError(msg)
+    return np.asarray(numbers, dtype=np.float64)
+
+
 def _read_rates(table: Mapping[str, Any]) -> Array:
     """Return rates; from probabilities in some years by a Poisson process."""
     if "rate" in table:
-        return np.asarray(table["rate"], dtype=np.float64)
+        return _read_numbers(table["rate"], "rate", Unit.PER_YEAR)
     years = to_ratio(table["years"], owner=_OWNER, name="years", condition=POSITIVE, example="50")
-    chance = np.asarray(table["probability"], dtype=np.float64)
+    chance = _read_numbers(table["probability"], "probability", Unit.ONE)
     if np.any(chance <= 0.0) or np.any(chance >= 1.0):
         given = short_repr(chance.tolist())
         msg = f"{_OWNER}: probabilities must be above 0 and below 1, got {given}"

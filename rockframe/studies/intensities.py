@@ -15,11 +15,11 @@ from rockframe.measures.intensity import measure_of_ground
 from rockframe.measures.response import checked_periods
 from rockframe.motion import GroundMotion
 from rockframe.results.joining import described_motions
-from rockframe.results.schema import SCHEMA
+from rockframe.results.schema import SCHEMA, labels_in_unit
 from rockframe.results.variables.studies import MOTION
 from rockframe.results.variables.variable import OSCILLATOR
 from rockframe.simulation.system import System
-from rockframe.studies.sweeps.axes import Changes, described_axes, labels_in_unit
+from rockframe.studies.sweeps.axes import Changes, described_axes
 from rockframe.studies.sweeps.case import known_motions
 from rockframe.studies.sweeps.motions import (
     ABBREVIATIONS,

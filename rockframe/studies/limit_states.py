@@ -13,13 +13,12 @@ from rockframe.arguments import checked_dataset, checked_list, json_attribute
 from rockframe.errors import ComponentError, SchemaError, did_you_mean, short_repr
 from rockframe.results.joining import SWEEP_ATTRIBUTES
 from rockframe.results.outcome import check_no_means, overturns
-from rockframe.results.schema import SCHEMA
+from rockframe.results.schema import SCHEMA, in_units_of_schema, labels_in_unit
 from rockframe.results.variables.bodies import BODIES, RESTRAINERS
 from rockframe.results.variables.requests import FORCE_SCALARS, POINT_PEAKS
 from rockframe.results.variables.variable import TIME, unit_suffix_of
 from rockframe.signals.arrays import AnyArray
 from rockframe.studies.confidence import SHARE
-from rockframe.studies.sweeps.axes import in_units_of_schema, labels_in_unit
 from rockframe.studies.sweeps.motions import SCALE
 from rockframe.units import NOT_NEGATIVE, Condition, Measure, Unit, to_ratio, to_si
 

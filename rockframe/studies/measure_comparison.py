@@ -30,6 +30,10 @@ from rockframe.studies.sweeps.motions import MotionsLike
 from rockframe.suggestions import with_hints
 
 _OWNER: Final = "compare_intensities"
+_REFERENCES: Final = (
+    "Luco and Cornell (2007), Earthquake Spectra 23, 357-392; Jalayer et al. (2012), J. Eng. Mech. "
+    "138, 307-316"
+)
 _SIGNIFICANCE: Final = 0.05
 """p-value below which a slope of the residuals is reported as significant [1]."""
 _ROUNDING: Final = 1e-9
@@ -235,7 +239,8 @@ def _comparison_dataset(
         values |= {"sufficiency_slope": tested[..., 0], "sufficiency_p_value": tested[..., 1]}
         names["covariate"] = np.array(list(covariates), dtype=object)
     dataset = build_dataset(
-        {name: np.array(column) for name, column in values.items()}, {}, over=("measure",),
+        {name: np.array(column) for name, column in values.items()},
+        {"references": _REFERENCES}, over=("measure",),
         title="Comparison of intensity measures", source="least squares and logistic regression",
     )  # fmt: skip
     return with_variables(dataset, names)

@@ -25,12 +25,12 @@ from rockframe.signals.arrays import AnyArray, Array
 from rockframe.simulation.system import System
 from rockframe.studies.confidence import clopper_pearson, normal_scores, read_confidence
 from rockframe.studies.sweeps.arguments import SweepArguments
-from rockframe.studies.sweeps.axes import Axis, read_number
+from rockframe.studies.sweeps.axes import Axis
 from rockframe.studies.sweeps.motions import MotionsLike, full_name
 from rockframe.studies.sweeps.planning import check_memory
 from rockframe.studies.sweeps.scenes import SweptScene, motions_of_study, scene_of
 from rockframe.studies.sweeps.sweep import sweep
-from rockframe.units import POSITIVE, Condition, Measure, RatioLike, Unit, to_ratio
+from rockframe.units import POSITIVE, Condition, Measure, RatioLike, Unit, read_number, to_ratio
 
 
 class Sampling(StrEnum):

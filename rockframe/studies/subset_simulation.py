@@ -64,6 +64,10 @@ _MAX_CASES: Final = 10_000_000
 _MAX_LEVELS: Final = 50
 _MIN_FAMILIES: Final = 5
 """Number of families below which the coefficient of variation is itself uncertain."""
+_REFERENCES: Final = (
+    "Au and Beck (2001), Probabilistic Eng. Mech. 16, 263-277; Papaioannou et al. (2015), "
+    "Probabilistic Eng. Mech. 41, 89-103"
+)
 _TABLE_ATTRIBUTES: Final = ("axes_json", "study_sha256")
 """Attributes with the columns of a table, and the name by which this process knows it."""
 
@@ -214,6 +218,7 @@ def subset_simulation(
         _warn_of_uncertain_probability(dataset)
     return dataset.assign_attrs({
         "title": "Subset simulation of a rocking system",
+        "references": f"{dataset.attrs['references']}; {_REFERENCES}",
         "limit_state": state.name,
         LIMITS_ATTRIBUTE: states_json([state]),
         SAMPLING_ATTRIBUTE: "subset simulation",

@@ -9,12 +9,20 @@ import xarray as xr
 from numpy.typing import NDArray
 
 from rockframe.errors import ComponentError, RecordWarning, SchemaError, collected_warnings, warn
+from rockframe.measures.common import OSCILLATOR_REFERENCE
 from rockframe.motion import GroundMotion
 from rockframe.motion.operations.matching import USUAL_PERIODS, Target
 from rockframe.motion.quantities import ArrayLike
 from rockframe.motion.value import replaced
 from rockframe.results.joining import MOTION
-from rockframe.results.schema import SCHEMA, build_dataset, with_variables, without_fill_values
+from rockframe.results.schema import (
+    SCHEMA,
+    build_dataset,
+    in_units_of_schema,
+    labels_in_unit,
+    with_variables,
+    without_fill_values,
+)
 from rockframe.signals.arrays import Array
 from rockframe.suggestions import with_hints
 from rockframe.suites.candidates import Candidates, Combination, candidates_of
@@ -27,6 +35,7 @@ Suite = TypeVar("Suite", bound=LabelledMotions)
 DEFAULT_BOUNDS: Final = (0.25, 4.0)
 """Bounds of scale factors that are usually accepted [1]."""
 _ROUNDING: Final = 1e-9
+_SCALED_TO: Final = "MotionSuite.scaled_to"
 
 
 @with_hints()
@@ -128,6 +137,7 @@ def scaled_set(
         },
         {
             **candidates.attributes,
+            "references": OSCILLATOR_REFERENCE,
             "least_factor": low,
             "greatest_factor": high,
             "factors_at_a_bound": int(at_bound.sum()),
@@ -155,11 +165,17 @@ def scaled_set(
     return without_fill_values(dataset)
 
 
+def compared_periods(scaling: xr.Dataset) -> Array:
+    """Return the periods at which scaled motions were compared with their target [s]."""
+    return labels_in_unit(scaling["period"], Unit.SECOND, owner=_SCALED_TO).to_numpy()
+
+
 def compared_target(scaling: xr.Dataset) -> TargetSpectrum | None:
     """Return the target of scaled motions, known at the periods that were compared."""
-    periods = scaling["period"].to_numpy()
+    periods = compared_periods(scaling)
     if periods.size < 2:
         return None
+    scaling = in_units_of_schema(scaling, owner=_SCALED_TO)
     spread = scaling["target_standard_deviation"].to_numpy()
     return TargetSpectrum.from_table(
         (periods, str(Unit.SECOND)),
@@ -184,10 +200,10 @@ def scaled_motions(
     needed = ("scale_factor", "spectral_misfit", MOTION)
     if any(name not in scaling.variables for name in needed) or "combination" not in scaling.attrs:
         msg = (
-            "MotionSuite.scaled_to: expected a TargetSpectrum, or a dataset of scaling_to or "
-            "selection_for"
+            f"{_SCALED_TO}: expected a TargetSpectrum, or a dataset of scaling_to or selection_for"
         )
         raise SchemaError(msg)
+    scaling = in_units_of_schema(scaling, owner=_SCALED_TO)
     one_by_one = scaling.attrs["combination"] == Combination.EACH
     motions: dict[str, GroundMotion] = {}
     verticals: dict[str, GroundMotion] = {}
@@ -200,7 +216,7 @@ def scaled_motions(
             if (name if one_by_one else motion.metadata.get("record")) == label:
                 motions[name] = _scaled(motion, factor, misfit)
         if len(motions) == before:
-            msg = f"MotionSuite.scaled_to: the suite has no {label!r}"
+            msg = f"{_SCALED_TO}: the suite has no {label!r}"
             raise ComponentError(msg)
         for name, motion in suite.verticals.items():
             if not one_by_one and motion.metadata.get("record") == label:

@@ -12,6 +12,7 @@ import xarray as xr
 from rockframe.arguments import checked_dataset, checked_function, checked_list, checked_text
 from rockframe.errors import ComponentError, SchemaError, short_repr
 from rockframe.motion.quantities import ArrayLike
+from rockframe.results.schema import labels_in_unit
 from rockframe.signals.arrays import Array
 from rockframe.signals.spectra import DAMPING_RATIO
 from rockframe.suggestions import SuggestingMeta, suggests_names
@@ -192,14 +193,16 @@ class TargetSpectrum(metaclass=SuggestingMeta):
         if spectrum is None or spectrum.sizes.get("damping_ratio") != 1:
             msg = f"{owner}: expected a dataset of rf.response_spectrum with one damping ratio"
             raise SchemaError(msg)
-        moving = spectrum.isel(damping_ratio=0, period=spectrum["period"].to_numpy() > 0.0)
+        spectrum = labels_in_unit(spectrum, ACCELERATION.unit, owner=owner)
+        periods = labels_in_unit(spectrum["period"], PERIOD.unit, owner=owner).to_numpy()
+        moving = spectrum.isel(damping_ratio=0, period=periods > 0.0)
         other_dims = [dim for dim in moving.dims if dim != "period"]
         logarithm: Any = np.log(moving)
         spread = None
         if other_dims and math.prod(moving.sizes[dim] for dim in other_dims) > 1:
             spread = logarithm.std(other_dims, ddof=1).to_numpy().tolist()
         return cls.from_table(
-            (moving["period"].to_numpy(), str(PERIOD.unit)),
+            (periods[periods > 0.0], str(PERIOD.unit)),
             (np.exp(logarithm.mean(other_dims)).to_numpy(), str(ACCELERATION.unit)),
             standard_deviations=spread,
             damping_ratio=float(spectrum["damping_ratio"][0]),

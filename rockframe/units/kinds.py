@@ -32,6 +32,7 @@ class Unit(StrEnum):
     PASCAL = "Pa"
     PASCAL_SECOND = "Pa s"
     PASCAL_PER_METRE = "Pa m^-1"
+    PER_YEAR = "year^-1"
 
 
 @dataclass(frozen=True)

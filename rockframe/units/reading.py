@@ -249,6 +249,13 @@ def to_ratio(
     return _check_value(_float(number), value, condition, owner=owner, name=name)
 
 
+def read_number(value: object, measure: Measure, *, owner: str, name: str) -> float:
+    """Read one value, which is a ratio where the unit of its measure is 1."""
+    if measure.unit == Unit.ONE:
+        return to_ratio(value, owner=owner, name=name)
+    return to_si(value, measure, owner=owner, name=name)
+
+
 def _parse_si(value: object, measure: Measure) -> float | None:
     """Read a text in the SI unit, which needs no conversion; None for any other."""
     if not isinstance(value, str) or not value.endswith(measure.unit):

@@ -1,4 +1,4 @@
-"""Coordinates in datasets of analyses have no fill value, since none of their values is missing."""
+"""Datasets of analyses: coordinates have no fill value, and the references are of the method."""
 
 import netCDF4
 import pytest
@@ -15,6 +15,7 @@ SUITE = {
     for k in range(6)
 }
 WIDTHS = ["0.5 m", "0.6 m"]
+TARGET = rf.TargetSpectrum.eurocode_8("0.2 g_0")
 
 
 @pytest.fixture(scope="module")
@@ -62,3 +63,23 @@ def test_coordinates_have_no_fill_value(analysis, runs, tmp_path):
     with netCDF4.Dataset(tmp_path / "found.nc") as file:
         for name in found.coords:
             assert "_FillValue" not in file[name].ncattrs(), name
+
+
+@pytest.mark.parametrize(
+    ("analysis", "authors"),
+    [
+        (lambda runs: rf.fragility(runs, "PGA", limits=[0.3]), "Baker"),
+        (lambda runs: rf.fragility(runs, "PGA", limits=[0.3], dispersion="common"), "McCullagh"),
+        (lambda runs: rf.fractile_curves(runs.isel(width=0), "PGA"), "Vamvatsikos"),
+        (lambda runs: rf.cloud_analysis(runs.isel(width=0, scale=[1]), "PGA"), "Jalayer"),
+        (lambda runs: rf.compare_intensities(runs, ["PGA"], pooled=["width"]), "Luco"),
+        (lambda runs: rf.ensemble_statistics(runs.isel(width=0, scale=0)), "Clopper"),
+        (annual_rate, "Cornell"),
+        (lambda _: rf.MotionSuite(SUITE).scaling_to(TARGET), "Nigam"),
+        (lambda _: rf.MotionSuite(SUITE).selection_for(TARGET, 2, bounds=None), "Baker and Lee"),
+    ],
+)
+def test_references_are_of_the_method(analysis, authors, runs):
+    references = analysis(runs).attrs["references"]
+    assert authors in references
+    assert "Winkler" not in references  # of the equations of a run

@@ -17,6 +17,8 @@ from rockframe.studies.fragility.likelihood import Bands, Fit, boundary, fit, ga
 from rockframe.studies.fragility.trials import StructureTrials, Trials
 from rockframe.studies.fragility.words import enough_trials
 
+_REFERENCES: Final = "Baker (2015), Earthquake Spectra 31, 579-599"
+_REFERENCES_OF_ORDERED: Final = "McCullagh (1980), J. Royal Statistical Soc. B 42, 109-142"
 _CURVE_POINTS: Final = 101
 """Intensities at which a curve is given."""
 _SURFACE_POINTS: Final = 41
@@ -110,7 +112,8 @@ def fragility_dataset(
         values["fitted_coefficient_error"] = errors
     dataset = build_dataset(
         _reshaped(values, sizes),
-        {**attributes, "bands": str(settings.bands), "confidence": settings.confidence},
+        {**attributes, "bands": str(settings.bands), "confidence": settings.confidence,
+         "references": _REFERENCES if fits is None else _REFERENCES_OF_ORDERED},
         over=tuple(sizes), title="Fragility of a rocking system", source="greatest likelihood",
     )  # fmt: skip
     if not single_measure:

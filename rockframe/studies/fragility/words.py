@@ -7,14 +7,17 @@ from typing import Final, NamedTuple
 import numpy as np
 import xarray as xr
 
-from rockframe.results.schema import SCHEMA
+from rockframe.results.schema import SCHEMA, labels_in_unit
 from rockframe.results.variables.analyses import LIMIT_STATE, FragilityStatus
 from rockframe.results.variables.variable import unit_suffix_of
 from rockframe.signals.arrays import AnyArray, Array
 from rockframe.studies.fragility.likelihood import Bands
 from rockframe.studies.intensities import PERIOD_ATTRIBUTE, measure_words
-from rockframe.studies.sweeps.axes import labels_in_unit
+from rockframe.units import Unit
 
+_INTENSITIES: Final = "median_intensity", "stripe_intensity"
+_RATIOS: Final = "dispersion", "exceedance_probability"
+"""Beginnings of the names of variables in the unit of the measure, and of those that are ratios."""
 POOLED_ATTRIBUTE: Final = "pooled"
 """Attribute that names the structures that were treated as one."""
 
@@ -107,14 +110,15 @@ def measures_of(fragility: xr.Dataset) -> list[str]:
 
 
 def in_own_units(fragility: xr.Dataset, measure: str, *, owner: str) -> xr.Dataset:
-    """Return intensities in the unit of their measure, where a user has put them into another."""
-    if measure not in SCHEMA:  # one of the user's own
-        return fragility
-    unit = str(SCHEMA[measure].unit)
+    """Return intensities and ratios in their units, where a user has put them into others."""
+    # the unit of a measure of the user's own is not known
+    of_measure = SCHEMA[measure].unit if measure in SCHEMA else None
+    units = dict.fromkeys((measure, *_INTENSITIES), of_measure) | dict.fromkeys(_RATIOS, Unit.ONE)
     converted = {
         name: labels_in_unit(fragility[name], unit, owner=owner).variable
         for name in fragility.variables
-        if name in (measure, "stripe_intensity") or str(name).startswith("median_intensity")
+        for start, unit in units.items()
+        if str(name).startswith(start)
     }
     return fragility.assign(converted)
 

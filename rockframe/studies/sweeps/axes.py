@@ -14,7 +14,6 @@ import xarray as xr
 
 from rockframe.arguments import json_attribute
 from rockframe.errors import ComponentError, UnitsError, short_repr
-from rockframe.results.schema import SCHEMA
 from rockframe.results.variables.studies import CASE, MOTION
 from rockframe.signals.arrays import AnyArray, Array
 from rockframe.simulation.provenance import SYSTEM_AXES as SYSTEM_AXES
@@ -25,8 +24,8 @@ from rockframe.units import (
     attached_unit,
     check_attached_unit,
     decimal_products,
+    read_number,
     to_ratio,
-    to_si,
     to_si_values,
 )
 
@@ -91,13 +90,6 @@ def read_numbers(value: object, measure: Measure, name: str, *, owner: str = OWN
         _refuse_bare_numbers(value, measure, name, owner)
         numbers = to_si_values(_as_python(value), measure, owner=owner, name=name)
     return np.array(numbers, dtype=np.float64)
-
-
-def read_number(value: object, measure: Measure, *, owner: str, name: str) -> float:
-    """Read one value, which is a ratio where the unit of its measure is 1."""
-    if measure.unit == Unit.ONE:
-        return to_ratio(value, owner=owner, name=name)
-    return to_si(value, measure, owner=owner, name=name)
 
 
 def _with_own_unit(value: object) -> object:
@@ -218,30 +210,6 @@ def _as_python(value: Any) -> Any:
         items = cast("list[Any]", value)
         return [item.item() if isinstance(item, np.generic) else item for item in items]
     return value
-
-
-def labels_in_unit(labels: xr.DataArray, unit: str | None, *, owner: str) -> xr.DataArray:
-    """Return the labels of an axis in its unit, if a user has converted them to another one."""
-    current = labels.attrs.get("units")
-    if unit is None or current in (None, unit):
-        return labels
-    measure = Measure("a value", Unit(unit), f"1 {unit}")
-    factor = read_number(f"1 {current}", measure, owner=owner, name=str(labels.name))
-    numbers = decimal_products(np.ravel(labels).astype(float).tolist(), factor)
-    converted, attributes = np.reshape(numbers, labels.shape), {**labels.attrs, "units": unit}
-    return xr.DataArray(converted, labels.coords, labels.dims, labels.name, attributes)
-
-
-def in_units_of_schema(dataset: xr.Dataset, *, owner: str) -> xr.Dataset:
-    """Return variables in their units, if a user has converted them, for example for a figure."""
-    converted = {
-        name: labels_in_unit(dataset[name], SCHEMA[str(name)].unit, owner=owner).variable
-        for name in dataset.variables
-        if name in SCHEMA and name not in dataset.indexes
-    }
-    # such as the places of points
-    coords = {name: converted.pop(name) for name in list(converted) if name in dataset.coords}
-    return dataset.assign(converted).assign_coords(coords)
 
 
 def faults_of_values(name: str, values: AnyArray) -> list[str]:

@@ -16,17 +16,11 @@ from rockframe.components import InitialState
 from rockframe.errors import SchemaError, StudyError, did_you_mean, short_repr
 from rockframe.motion import GroundMotion
 from rockframe.results.joining import SWEEP_ATTRIBUTES, described_motions
+from rockframe.results.schema import labels_in_unit
 from rockframe.results.variables.studies import MOTION, REPEATED
 from rockframe.simulation.system import System
 from rockframe.solve.accuracy import LEVELS, Accuracy
-from rockframe.studies.sweeps.axes import (
-    SYSTEM_AXES,
-    Axis,
-    Changes,
-    described_axes,
-    labels_in_unit,
-    read_number,
-)
+from rockframe.studies.sweeps.axes import SYSTEM_AXES, Axis, Changes, described_axes
 from rockframe.studies.sweeps.chunk import REPEATED_LEVEL
 from rockframe.studies.sweeps.motions import full_name, motion_number, motion_of_case, named_motions
 from rockframe.studies.sweeps.scenes import SweptScene, scene_of
@@ -34,7 +28,7 @@ from rockframe.studies.sweeps.store import Store
 from rockframe.studies.sweeps.study import cached_study
 from rockframe.studies.sweeps.sweep import open_study
 from rockframe.suggestions import suggests_names, with_hints
-from rockframe.units import Measure, Unit
+from rockframe.units import Measure, Unit, read_number
 
 NOT_GIVEN: Final = "must be given, as motions="
 """Words on a record that neither the result nor the process has."""

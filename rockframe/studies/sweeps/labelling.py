@@ -17,7 +17,13 @@ from rockframe.results.forces import count_slides
 from rockframe.results.joining import CASE_COUNT
 from rockframe.results.outcome import MIN_REPORTED_SLIP, PEAK_SLIPS, overturned_from_status
 from rockframe.results.points import BodyPoint, point_labels
-from rockframe.results.schema import SCHEMA, build_dataset, with_variables, without_fill_values
+from rockframe.results.schema import (
+    SCHEMA,
+    build_dataset,
+    labels_in_unit,
+    with_variables,
+    without_fill_values,
+)
 from rockframe.results.variables.bodies import BODY, RESTRAINER
 from rockframe.results.variables.requests import POINT_PEAKS
 from rockframe.results.variables.runs import EVENTS_AND_SCALARS, RunStatus
@@ -25,7 +31,7 @@ from rockframe.results.variables.studies import CASE, MESSAGE, MOTION, REPEATED,
 from rockframe.results.variables.variable import TIME
 from rockframe.signals.arrays import AnyArray
 from rockframe.simulation.run import NONE
-from rockframe.studies.sweeps.axes import OWNER, Grid, labels_in_unit
+from rockframe.studies.sweeps.axes import OWNER, Grid
 from rockframe.studies.sweeps.chunk import DRIVER, SCREEN, CaseResults, CollectedResults, Driver
 from rockframe.studies.sweeps.scenes import SystemScene
 from rockframe.studies.sweeps.study import Histories, Study

@@ -68,6 +68,18 @@ def test_steep_hazard_and_wide_dispersion_match_quadrature(curve, exponent, spre
     assert (found.rate_share >= 0.0).all()
 
 
+@pytest.mark.parametrize("exponent", [0.06, 0.2, 0.7, 3.0])
+def test_rate_above_a_flat_hazard_curve_is_the_closed_form(curve, exponent):
+    median, spread, end = curve.median_intensity.item(), curve.dispersion.item(), 20.0
+    table = {"intensity": ([0.1, end], "m/s^2"), "rate": [1e-3, 1e-3 * (end / 0.1) ** -exponent]}
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", ModelWarning)
+        found = rf.annual_rate(curve, table).unreached_rate_above.item()
+    eta, shift = math.log(end / median) / spread, exponent * spread
+    share = (end / median) ** exponent * math.exp(0.5 * shift**2) * ndtr(-eta - shift) + ndtr(eta)
+    assert found == pytest.approx(share * table["rate"][1], rel=1e-9)
+
+
 def test_median_beyond_the_table_gives_zero_rate(curve):
     far = curve.assign(
         median_intensity=curve.median_intensity * 1e3, dispersion=curve.dispersion * 0.0 + 1e-3
@@ -115,13 +127,13 @@ def test_hazard_table_integral_matches_quadrature(curve):
 
 
 def in_g(curve):
-    """Return a fragility with accelerations in g."""
-    names = [
-        str(name) for name, one in curve.variables.items() if one.attrs.get("units") == "m s^-2"
-    ]
+    """Return a fragility with accelerations in g, and ratios in per cent."""
+    others = {"m s^-2": ("g_0", G), "1": ("percent", 0.01)}
     found = curve.copy(deep=True)
-    for name in names:
-        found[name] = (curve[name] / G).assign_attrs(curve[name].attrs, units="g_0")
+    for name, one in curve.variables.items():
+        if one.dtype.kind == "f" and one.attrs.get("units") in others:
+            unit, size = others[one.attrs["units"]]
+            found[name] = (curve[name] / size).assign_attrs(one.attrs, units=unit)
     return found
 
 
@@ -131,12 +143,17 @@ def test_a_fragility_in_other_units_has_the_same_rate(curve):
     name = "peak_ground_acceleration"
     for one in (other, curve.assign_coords({name: other[name]})):  # or only its coordinate
         assert rf.annual_rate(one, TABLE).annual_rate.item() == pytest.approx(rate)
+    expected, found = (rf.annual_rate(one, TABLE) for one in (curve, other))
+    upper = "annual_rate_upper_bound"  # from the probabilities
+    assert found[upper].item() == pytest.approx(expected[upper].item(), rel=1e-9)
 
 
 def test_exports_do_not_depend_on_units(curve, tmp_path):
     other = in_g(curve)
-    exported = rf.export.to_pelicun(other, "x")["LS1-Theta_0"].item()
-    assert exported == pytest.approx(curve.median_intensity.item() / G, rel=1e-12)
+    exported = rf.export.to_pelicun(other, "x")
+    parameters = exported["LS1-Theta_0"].item(), exported["LS1-Theta_1"].item()
+    expected = curve.median_intensity.item() / G, curve.dispersion.item()
+    assert parameters == pytest.approx(expected, rel=1e-12)
     files = [
         rf.export.to_openquake({"x": one}, tmp_path / f"{k}.xml").read_text()
         for k, one in enumerate((curve, other))
@@ -189,6 +206,34 @@ def test_hazard_accepts_probabilities_and_dataarrays(curve):
         RATES, dims="pga", coords={"pga": ("pga", VALUES * G, {"units": "m s^-2"})}
     )
     assert rf.annual_rate(curve, array).annual_rate.item() == pytest.approx(one, rel=1e-12)
+
+
+@pytest.mark.parametrize(
+    ("unit", "size"), [("year^-1", 1.0), ("1/s", 365.25 * 86400.0), ("percent", 0.01), ("1", 1.0)]
+)
+def test_the_unit_of_hazard_rates_counts(curve, unit, size):
+    rates = RATES / size
+    array = xr.DataArray(
+        rates, dims="x", coords={"x": ("x", VALUES * G, {"units": "m/s^2"})}, attrs={"units": unit}
+    )
+    expected = rf.annual_rate(curve, TABLE).annual_rate
+    hazards = [array, {**TABLE, "rate": array}]
+    hazards += [] if unit == "1" else [{**TABLE, "rate": (rates, unit)}]
+    for hazard_curve in hazards:
+        found = rf.annual_rate(curve, hazard_curve).annual_rate
+        assert found.item() == pytest.approx(expected.item(), rel=1e-12)
+    assert expected.attrs["units"] == "year^-1"
+
+
+def test_probabilities_of_hazard_may_be_percentages(curve):
+    chances = 1.0 - np.exp(-50.0 * RATES[1:])
+    expected, found = (
+        rf.annual_rate(
+            curve, {"intensity": (VALUES[1:], "g_0"), "probability": given, "years": 50}
+        ).annual_rate
+        for given in (chances, [f"{100.0 * chance!r} %" for chance in chances.tolist()])
+    )
+    assert found.item() == pytest.approx(expected.item(), rel=1e-12)
 
 
 def test_unit_g_means_gravity_for_accelerations(curve):
@@ -284,9 +329,14 @@ def test_rate_beyond_the_hazard_table_warns(curve):
             ({"intensity": (values, "g_0"), "rate": rates}, ComponentError, "above zero rise")
             for values, rates in (
                 ([0.0, 0.1], [1e-2, 1e-3]), ([0.2, 0.1], [1e-2, 1e-3]), ([0.1, 0.2], [1e-2, 0.0]),
-                ([0.1, 0.2], [np.inf, 1e-3]), ([0.1, 0.2], [1e-2, 1e-2]),
+                ([0.1, 0.2], [1e-2, 1e-2]),
             )
         ),
+        ({"intensity": ([0.1, 0.2], "g_0"), "rate": [np.inf, 1e-3]}, ComponentError, "be finite"),
+        ({**TABLE, "rate": (RATES, "m")}, UnitsError, "rate needs plain numbers or values in year"),
+        ({**TABLE, "rate": ["a", "b"]}, UnitsError, "rate needs plain numbers or values in year"),
+        ({"intensity": (VALUES, "g_0"), "probability": (RATES, "1/year"), "years": 50}, UnitsError,
+         "probability needs plain numbers, got"),
         (np.exp, ComponentError, "needs between"),
         (3.0, ComponentError, "must be a table"),
     ],

@@ -45,6 +45,7 @@ def test_subset_simulation_dataset_is_labelled_and_described(found, tmp_path):
         xr.testing.assert_identical(again.load().drop_attrs(), found.drop_attrs())
     assert found.sizes["sampling_level"] > 2
     assert found.attrs["limit_state"] == "overturning"
+    assert "Au and Beck (2001)" in found.attrs["references"]
     assert f"{found.exceedance_probability.item():.2e}" in found.verdict
     assert (
         f"{found.run_count.item()} runs in {found.sizes['sampling_level']} levels" in found.verdict

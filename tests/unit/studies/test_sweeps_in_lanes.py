@@ -149,8 +149,9 @@ def test_lanes_continue_or_stop_after_overturning(monkeypatch, course):
 
 def test_failing_cases_have_the_same_reason_in_lanes(monkeypatch):
     system = rf.System(rf.Block(width="1.2 m", height="6 m", mass="20 t"), PADS)
+    heights, ratios = ["1e200 m", "1.5 m", "6 m"], [0.1, 50]
     lanes, alone = run_both_ways(
-        monkeypatch, system, MOTIONS[:1], height=["1e200 m", "1.5 m", "6 m"], damping_ratio=[0.1, 50]
+        monkeypatch, system, MOTIONS[:1], height=heights, damping_ratio=ratios
     )
     assert_same_bits(lanes, alone)
     assert (alone.status == 6).any()

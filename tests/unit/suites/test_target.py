@@ -76,6 +76,48 @@ def test_asce_7():
         assert target.at([f"{period} s"])[0] == pytest.approx(value * G, rel=1e-12), period
 
 
+@pytest.fixture(scope="module")
+def motions():
+    return {name: rf.GroundMotion.stochastic(6.5, "20 km", seed=name) for name in (1, 2, 3)}
+
+
+def converted(dataset, **units):
+    """Return a dataset with variables in other units, each with its size in the unit it has."""
+    for name, (unit, size) in units.items():
+        values = dataset[name]
+        changed = (values.dims, values.to_numpy() / size, {**values.attrs, "units": unit})
+        dataset = (
+            dataset.assign_coords({name: changed})
+            if name in dataset.coords
+            else (dataset.assign({name: changed}))
+        )
+    return dataset
+
+
+def test_a_spectrum_in_other_units_is_the_same_target(motions):
+    spectrum = rf.response_spectrum(motions, ["0.5 s", "1 s", "2 s"])
+    logarithms = np.log(spectrum.pseudo_spectral_acceleration.isel(damping_ratio=0))
+    in_g = converted(spectrum, pseudo_spectral_acceleration=("g_0", G), period=("ms", 1e-3))
+    target = rf.TargetSpectrum.from_spectrum(in_g)
+    assert target.at(["1 s"])[0] == pytest.approx(np.exp(logarithms.sel(period=1.0).mean()).item())
+    assert target.limits == pytest.approx((0.5, 2.0))
+
+
+def test_scaled_motions_do_not_depend_on_units_of_the_scaling(motions):
+    suite = rf.MotionSuite({str(name): motion for name, motion in motions.items()})
+    found = suite.scaling_to(rf.TargetSpectrum.eurocode_8("0.2 g_0"), conditioned_on=["1 s"])
+    shown = converted(
+        found, scale_factor=("percent", 0.01), target_spectral_acceleration=("g_0", G),
+        period=("ms", 1e-3),
+    )  # fmt: skip
+    scaled = suite.scaled_to(shown)
+    factor = found.scale_factor.sel(motion="1").item()
+    expected = factor * np.abs(motions[1].si.horizontal.samples).max()
+    assert scaled["1"].si.peak == pytest.approx(expected, rel=1e-12)
+    # on the plateau, and at 1 s where velocities are constant
+    assert scaled.target.at(["0.3 s", "1 s"]) == pytest.approx([0.5 * G, 0.2 * G], rel=1e-12)
+
+
 def test_the_median_of_motions():
     motions = [rf.GroundMotion.stochastic(6, "20 km", seed=k) for k in range(4)]
     spectrum = rf.response_spectrum(
