@@ -280,9 +280,9 @@ def execute_fragility(arguments: argparse.Namespace, answer: Answer) -> int:
 
 def _runs_of_study(arguments: argparse.Namespace) -> xr.Dataset:
     """Read the runs of a study, from its file or its store."""
-    if not arguments.records:
-        refuse_reading_options(arguments, "name the records of its runs")
-    more = "scales", "store", "accuracy", "free_vibration", "duration"
+    more = ["scales", "store", "accuracy", "free_vibration", "duration"]
+    if not arguments.records:  # these say how records are read
+        more += ["unit", "time_step"]
     if any(getattr(arguments, name) for name in more):
         words = "its runs are finished; scales, a store, an accuracy or durations go with a scene"
         raise FileError(arguments.scene, f"this is a result: {words}")
