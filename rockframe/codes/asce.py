@@ -5,7 +5,7 @@ from collections.abc import Mapping
 from typing import Final
 
 from rockframe.codes.check import peak_responses, read_motions, rigid_block_setting, scene_summary
-from rockframe.components import Block
+from rockframe.components import Block, RigidGround
 from rockframe.motion import GroundMotion
 from rockframe.reports.checks import CheckedLine, CheckedVerdict, CodeCheck
 from rockframe.simulation.system import System
@@ -51,7 +51,8 @@ def asce_7_22(
     strength_factor : float, optional
         R_po from the table of components [1].
     friction : float, optional
-        Coefficient of friction under the component. By default it is that of its ground [1].
+        Coefficient of friction under the component, on which a `Block` also slides in its motions.
+        A scene moves on its own ground, whose friction is the default [1].
     free_vibration : str or Quantity, optional
         Duration for which the run goes on after the end of each motion, on a still floor [s].
 
@@ -109,6 +110,8 @@ def asce_7_22(
         available_friction,
     )
     if floor_motions is not None:
+        if isinstance(block, Block) and available_friction is not None:
+            system = System(block, RigidGround(friction=available_friction))
         runs = peak_responses(system, read_motions(floor_motions, _OWNER), free_vibration)
         lines["Motion on the floor"] = tuple(
             CheckedLine(label, peak.rotation, Unit.RADIAN,

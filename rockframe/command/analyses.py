@@ -235,8 +235,8 @@ def execute_ida(arguments: argparse.Namespace, answer: Answer) -> int:
 
 _FRAGILITY_KIND: Final = analysis_kind("a fragility", "exceedance_probability", "fragility_status")
 _MOTION_MISSING: Final = (
-    "is not in this result; name the store of the study, which keeps its records, instead of the "
-    "result, or run it again with --store"
+    "is not in this result; name the records after it, or the store of the study, which keeps "
+    "them, instead of the result"
 )
 _DEFAULT_SCALES: Final = [0.25 * k for k in range(1, 17)]
 """Scales of the motions, if neither the file nor the command line has any."""
@@ -248,9 +248,10 @@ def execute_fragility(arguments: argparse.Namespace, answer: Answer) -> int:
     study = None if known else _scene_and_motions(arguments)
     read = [arguments.scene, *arguments.records] if study is None else study.files
     outputs = Outputs(arguments, read, answer, output=_FRAGILITY_KIND, picture=PICTURE_KIND)
-    fitted = _typed_intensity(arguments, fragility)
+    fitted, motions = _typed_intensity(arguments, fragility), None
     if study is None:
         runs = _runs_of_study(arguments)
+        motions = suite_from(arguments.records, arguments) if arguments.records else None
     else:
         values: dict[str, Any] = {"store": study.store, **study.arguments}
         if AXES not in values and CASES not in values:
@@ -260,7 +261,7 @@ def execute_fragility(arguments: argparse.Namespace, answer: Answer) -> int:
         except StudyError as problem:
             raise study.at_lines(problem) from problem
     try:
-        dataset = fragility(runs, **fitted)
+        dataset = fragility(runs, motions=motions, **fitted)
     except StudyError as problem:
         if not known or NOT_GIVEN not in str(problem):
             raise
@@ -279,11 +280,11 @@ def execute_fragility(arguments: argparse.Namespace, answer: Answer) -> int:
 
 def _runs_of_study(arguments: argparse.Namespace) -> xr.Dataset:
     """Read the runs of a study, from its file or its store."""
-    more = (
-        "records", "unit", "time_step", "scales", "store", "accuracy", "free_vibration", "duration",
-    )  # fmt: skip
+    more = ["scales", "store", "accuracy", "free_vibration", "duration"]
+    if not arguments.records:  # these say how records are read
+        more += ["unit", "time_step"]
     if any(getattr(arguments, name) for name in more):
-        words = "its runs are finished; records, scales, a store or durations go with a scene"
+        words = "its runs are finished; scales, a store, an accuracy or durations go with a scene"
         raise FileError(arguments.scene, f"this is a result: {words}")
     if Path(arguments.scene).expanduser().is_dir():
         return open_study(arguments.scene)

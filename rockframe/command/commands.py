@@ -212,7 +212,7 @@ COMMANDS: Final = (
   rockframe fragility scene.toml PEERNGARecords.zip --picture fragility.png
   rockframe fragility scene.toml records --intensity SA --period '0.5 s' --scales 0.5:4:0.5
   rockframe fragility study.toml --store kept -o fragility.nc
-  rockframe fragility runs.nc --limits uplift,0.5 --json""",
+  rockframe fragility runs.nc records --limits uplift,0.5 --json""",
         (*ANALYSIS_ARGUMENTS, OVERWRITE_OPTION),
     ),
     Command(

@@ -46,8 +46,9 @@ class HorizontalPair(metaclass=SuggestingMeta):
     ----------
     first, second : GroundMotion
         The horizontal components, of the same time step. Their starts, if both are known, agree
-        to a tenth of the time step. The shorter one is padded with zeros. Vertical components in
-        them are kept.
+        to a tenth of the time step. The shorter one is padded with zeros, to the first
+        of which a straight line leads from the last sample of a record. Vertical components in them
+        are kept.
     vertical : GroundMotion, optional
         The vertical component, positive upwards.
 

@@ -258,7 +258,8 @@ def _sentence(dataset: xr.Dataset, motions_repeat: bool) -> str:
     if math.isnan(slope):
         text += "; those between are too few, or of one intensity, for a line"
     else:
-        text += f"; the {response} of the others grows with power {slope:.3g} of {words}, "
+        verb = "grows" if slope > 0.0 else "falls"
+        text += f"; the {response} of the others {verb} with power {abs(slope):.3g} of {words}, "
         text += f"dispersion {dispersion:.3g}"
     left_out = int(dataset["left_out_count"].max())
     text += f"; {left_out} are left out, without a verdict or an intensity" if left_out else ""

@@ -4,7 +4,7 @@ Also the axes of analyses along scales of motions: each combination of their val
 """
 
 import math
-from collections.abc import Callable, Hashable, Iterable, Mapping, Sequence
+from collections.abc import Callable, Collection, Hashable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from inspect import signature
 from types import MappingProxyType
@@ -313,7 +313,7 @@ def read_line_axes(
     scene: SweptScene,
     *,
     owner: str,
-    argument_names: Iterable[str],
+    argument_names: Collection[str],
     own_axes: Sequence[Axis] = (),
 ) -> LineAxes:
     """Read the axes of an analysis; argument names are for proposals."""
@@ -335,7 +335,12 @@ def read_line_axes(
             faults += [f"{why}{argument if argument not in why else ''}" for why in reasons]
     for axis in line_axes:
         if axis.changes is Changes.MOTION:
-            faults.append(f"axis {axis.name!r} scales the motion, as scale does; give scale alone")
+            advice = (
+                "as scale does; give scale alone"
+                if SCALE in argument_names
+                else f"which {owner} runs as it is; scale the motion itself, motion.scaled(2)"
+            )
+            faults.append(f"axis {axis.name!r} scales the motion, {advice}")
         faults += faults_of_values(axis.name, axis.values)
     faults += scene.faults([*own_axes, *line_axes])
     if faults:

@@ -414,7 +414,12 @@ def _sentence(dataset: xr.Dataset) -> str:
     rates = np.atleast_1d(last["annual_rate"].to_numpy()).ravel()
     known = rates[~np.isnan(rates)]
     if not len(known):
-        return f"There is no fragility against {state}, and so no rate."
+        text = f"There is no fragility against {state}, and so no rate."
+        rates = dataset["annual_rate"]
+        others = rates.notnull().any([dim for dim in rates.dims if dim != "limit_state"])
+        if "limit_state" in others.dims and others.any():
+            text += f" {_sentence(dataset.isel(limit_state=np.flatnonzero(others)[-1:]))}"
+        return text
     measure = measure_words(str(dataset.attrs["intensity"]), dataset.attrs.get(PERIOD_ATTRIBUTE))
     unit = unit_suffix_of(dataset["quantile_intensity"].attrs)
     if len(known) > 1:

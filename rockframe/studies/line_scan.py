@@ -409,7 +409,7 @@ def read_resolution(value: object, *, owner: str) -> float:
 
 def read_sorted(value: object, measure: Measure, name: str, *, owner: str) -> Array:
     """Read values above zero, sorted, equal ones once."""
-    values = np.unique(read_numbers(value, measure, name))
+    values = np.unique(read_numbers(value, measure, name, owner=owner))
     if not len(values) or values[0] <= 0.0:
         msg = f"{owner}: {name} must be above zero, got {short_repr(value)}"
         raise ComponentError(msg)
@@ -418,7 +418,7 @@ def read_sorted(value: object, measure: Measure, name: str, *, owner: str) -> Ar
 
 def read_scales(value: object, *, owner: str) -> Array:
     """Read the scales of a scan."""
-    values = np.unique(read_numbers(value, MOTION_AXES[SCALE].measure, SCALE))
+    values = np.unique(read_numbers(value, MOTION_AXES[SCALE].measure, SCALE, owner=owner))
     if not 2 <= len(values) <= _MAX_SCALES or values[0] <= 0.0:
         expected = f"2 to {_MAX_SCALES} different numbers above zero"
         msg = f"{owner}: scale needs {expected}, got {short_repr(value)}"

@@ -1,7 +1,7 @@
 """Spectra of rocking and of overturning: motions and blocks of all sizes."""
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from inspect import signature
 from typing import Any, Final, Unpack
 
@@ -48,8 +48,15 @@ class BlockSizes:
     """A system, whose block is defined by its shape factor, with blocks of other sizes."""
 
     def __init__(
-        self, system: System, periods: Any, slenderness: Any, axes: object = None, *, owner: str
+        self,
+        system: System,
+        periods: Any,
+        slenderness: Any,
+        axes: object = None,
+        *,
+        of: Callable[..., xr.Dataset],
     ) -> None:
+        owner = of.__name__
         check_system(system, owner)
         self.system = _with_shape_factor(system, owner)
         si = self.system.parts.block_si
@@ -61,9 +68,8 @@ class BlockSizes:
         radius = scale * (0.5 * periods / math.pi) ** 2
         angle = np.arctan(1.0 / slenderness)
         # in rows of a table: slenderness by slenderness
-        width, height = (np.outer(2.0 * of(angle), radius).ravel() for of in (np.sin, np.cos))
+        width, height = (np.outer(2.0 * part(angle), radius).ravel() for part in (np.sin, np.cos))
         scene = scene_of(self.system)
-        arguments = signature(overturning_spectrum).parameters
         # a wall has a height, too
         parts = self.system.parts.structural()
         shared = {name for part in parts if not isinstance(part, Block) for name in part.varied()}
@@ -73,7 +79,7 @@ class BlockSizes:
         }
         own_axes = [scene.axis(name, values) for name, values in sizes.items()]
         other_axes = read_line_axes(
-            axes, scene, owner=owner, argument_names=arguments, own_axes=own_axes
+            axes, scene, owner=owner, argument_names=signature(of).parameters, own_axes=own_axes
         )
         self.columns = other_axes.columns(sizes)
         self._sizes = {"slenderness": len(slenderness), "rocking_period": len(periods)}
@@ -172,7 +178,7 @@ def rocking_spectrum(
     >>> dict(found.peak_relative_rotation.sizes)
     {'slenderness': 1, 'rocking_period': 3, 'motion': 1}
     """
-    sizes = BlockSizes(system, periods, slenderness, axes, owner=_ROCKING)
+    sizes = BlockSizes(system, periods, slenderness, axes, of=rocking_spectrum)
     named = needed_motions(motions, scene_of(system), owner=_ROCKING)
     runs = sweep(sizes.system, named, cases=table_of(sizes.columns), **run)
     return sizes.unstack(runs).assign_attrs(title="Rocking spectrum")
@@ -246,7 +252,7 @@ def overturning_spectrum(
     >>> found.capacity_intensity.units
     'm s^-2'
     """
-    sizes = BlockSizes(system, periods, slenderness, axes, owner=_OVERTURNING)
+    sizes = BlockSizes(system, periods, slenderness, axes, of=overturning_spectrum)
     scales = read_scales(scale, owner=_OVERTURNING)
     width = read_width(bracket_width, owner=_OVERTURNING)
     finest = read_resolution(resolution, owner=_OVERTURNING)

@@ -25,7 +25,7 @@ from rockframe.errors import (
 )
 from rockframe.motion import GroundMotion
 from rockframe.motion.display import peak_text
-from rockframe.motion.pair import HorizontalPair
+from rockframe.motion.pair import HorizontalPair, motion_hint
 from rockframe.notebook import CELL_STYLE, TABLE_STYLE, html_summary, sparkline
 from rockframe.results.joining import MOTION
 from rockframe.results.schema import build_dataset
@@ -363,7 +363,8 @@ def _read_motions(value: object, owner: str) -> dict[str, GroundMotion]:
         raise ComponentError(msg)
     for label, motion in motions.items():
         if not isinstance(motion, GroundMotion):
-            msg = f"{owner}: {label!r} needs a GroundMotion, got {short_repr(motion)}; {_EXAMPLE}"
+            hint = motion_hint(motion) or f"; {_EXAMPLE}"
+            msg = f"{owner}: {label!r} needs a GroundMotion, got {short_repr(motion)}{hint}"
             raise ComponentError(msg)
     return motions
 

@@ -199,6 +199,16 @@ def test_asce_check_reports_overturning_under_floor_motion():
     assert "overturned" in [line.words for line in check.lines["Motion on the floor"]]
 
 
+def test_asce_check_moves_a_block_on_the_friction_that_is_given():
+    floor = rf.GroundMotion.sine_pulse("9 m/s^2", "0.5 Hz")
+    by_argument = rf.codes.asce_7_22(CABINET, floor, spectral_acceleration=1.0, friction=0.3)
+    scene = rf.System(CABINET, rf.RigidGround(friction=0.3))
+    by_ground = rf.codes.asce_7_22(scene, floor, spectral_acceleration=1.0)
+    assert by_argument.passed == by_ground.passed
+    assert by_argument.passed["motion"]  # held in place it overturns
+    assert by_argument.scene == by_ground.scene
+
+
 def test_anchors_carry_net_uplift_of_the_vertical_force():
     check = rf.codes.asce_7_22(CABINET, spectral_acceleration=5.0)
     values = {name: check.value(name) for name in ("M_OT", "W_p", "F_v", "M_R, with F_v")}

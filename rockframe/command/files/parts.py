@@ -36,12 +36,13 @@ class InnerParts:
 
     slots: tuple[str, ...]  # their kinds, the usual one first
     several: bool  # whether they are an array of tables
+    or_one: bool = False  # whether a single table may stand for equal ones
 
 
 _INNER_PARTS: Final[Mapping[type, Mapping[str, InnerParts]]] = {
     Stack: {
         _BODIES: InnerParts(("block",), several=True),
-        "interfaces": InnerParts(("pads", "soil", "ground"), several=True),
+        "interfaces": InnerParts(("pads", "soil", "ground"), several=True, or_one=True),
     },
     RockingFrame: {"column": InnerParts(("block",), several=False)},
 }
@@ -125,14 +126,15 @@ def _build_inner(file: TomlFile, where: KeyPath, inner: InnerParts, table: dict[
     """Build the parts of an inner table; false if one of them has faults."""
     name = str(where[-1])
     value = table[name]
-    if inner.several and not isinstance(value, list):
+    several = inner.several and not (inner.or_one and isinstance(value, Mapping))
+    if several and not isinstance(value, list):
         header = f"[[{table_title(where)}]]"
         words = f"{name} must be an array of tables, {header} above each, got {short_repr(value)}"
         file.add_fault(where, words)
         return False
     known = {key: kind for slot in inner.slots for key, kind in classes_in(slot).items()}
-    parts = _build_each(file, where, known, value, several=inner.several)
-    table[name] = parts if inner.several else parts[0]
+    parts = _build_each(file, where, known, value, several=several)
+    table[name] = parts if several else parts[0]
     return None not in parts
 
 

@@ -39,9 +39,10 @@ def with_vertical(motion: MotionType, other: MotionValue | None) -> MotionType:
     Parameters
     ----------
     other : GroundMotion or None
-        Motion of the same time step; the shorter of the two is padded with zeros. If its file
-        calls it positive downwards (``metadata["positive"]``, as for a component ``DWN``), its
-        sign is reversed. None removes the vertical component.
+        Motion of the same time step; the shorter of the two is padded with zeros, to the first of
+        which a straight line leads from the last sample of a record. If its file calls it
+        positive downwards (``metadata["positive"]``, as for a component ``DWN``), its sign is
+        reversed. None removes the vertical component.
 
     Returns
     -------
@@ -128,7 +129,8 @@ def rotated(
     ----------
     other : GroundMotion
         The horizontal component at a right angle to this one, of the same time step; the shorter
-        of the two is padded with zeros.
+        of the two is padded with zeros, to the first of which a straight line leads from the last
+        sample of a record.
     angle : str or Quantity, optional
         Angle from this component towards the other one [rad].
     azimuth : str or Quantity, optional

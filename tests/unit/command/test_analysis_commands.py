@@ -89,7 +89,7 @@ def test_fragility_command_uses_existing_runs(run_command, records):
         states = answer["numbers"]["limit_state"]["value"]
         assert states == ["uplift", "rotation 0.5", "overturning"]
     assert len(verdicts) == 1
-    code, _, problem = run_command("fragility", "runs.nc", "records")
+    code, _, problem = run_command("fragility", "runs.nc", "--scales", "1,2")
     assert (code, "its runs are finished" in problem) == (2, True)
 
 
@@ -250,7 +250,7 @@ def test_serve_command_prints_its_address_and_exits_on_interrupt(run_command, mo
 
 
 @pytest.mark.usefixtures("records")
-def test_fragility_of_runs_without_records_suggests_the_store(run_command, folder, monkeypatch):
+def test_fragility_of_runs_takes_records_or_the_store(run_command, folder, monkeypatch):
     words = 'scene = "scene.toml"\nmotions = ["records"]\nstore = "kept"\n[axes]\nscale = [1, 2]\n'
     (folder / "study.toml").write_text(words)
     assert run_command("study", "study.toml", "-o", "runs.nc")[0] == 0
@@ -258,6 +258,12 @@ def test_fragility_of_runs_without_records_suggests_the_store(run_command, folde
     code, _, err = run_command("fragility", "runs.nc")
     assert code == 2
     assert "runs.nc: the record " in err
-    assert "is not in this result; name the store of the study" in err
+    assert "is not in this result; name the records after it, or the store" in err
     assert "motions=" not in err
-    assert run_command("fragility", "kept")[0] == 0
+    assert run_command("fragility", "runs.nc", "--unit", "g")[0] == 2  # nothing to read by it
+    verdicts = set()
+    for words in (("kept",), ("runs.nc", "records")):
+        code, out, _ = run_command("fragility", *words, "--json")
+        assert code == 0
+        verdicts.add(json.loads(out)["verdict"])
+    assert len(verdicts) == 1

@@ -459,3 +459,12 @@ def test_written_parts_survive_toml_round_trip(name, file):
         line for head, keys in toml_tables(system.parts.structural()) for line in (head, *keys)
     ]
     assert read_scene(file("\n".join(lines))).system == system
+
+
+def test_one_table_of_interfaces_is_the_base_between_all_bodies(file):
+    body = "[[stack.bodies]]\nwidth = '1 m'\nheight = '1.5 m'\nmass = '2 t'\n"
+    joint = "[stack.interfaces]\ntype = 'RigidGround'\nfriction = 0.3\n"
+    drum, base = rf.Block(width="1 m", height="1.5 m", mass="2 t"), rf.RigidGround(friction=0.3)
+    assert read_scene(file(3 * body + joint)).system == rf.System(
+        rf.Stack(drum, drum, drum, interfaces=base)
+    )

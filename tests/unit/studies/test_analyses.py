@@ -15,7 +15,7 @@ from unit.studies.small_analyses import (
 )
 
 import rockframe as rf
-from rockframe.errors import ComponentError, SchemaError, SolverWarning, StudyError
+from rockframe.errors import ComponentError, SchemaError, SolverWarning, StudyError, UnitsError
 from rockframe.studies.probability import rank_parameters
 
 
@@ -405,3 +405,33 @@ def test_sequence_reports_its_pause_in_whole_time_steps():
     assert found.pause.attrs["units"] == "s"
     np.testing.assert_allclose(found.pause, [0.01, 0.004], rtol=1e-12)
     assert "pause" not in found.attrs
+
+
+@pytest.mark.parametrize(
+    ("name", "arguments", "match"),
+    [
+        ("rocking_spectrum", {"scale": [2.0]}, "which rocking_spectrum runs as it is; scale the"),
+        ("rocking_spectrum", {"PGA": ["2 m/s^2"]}, "which rocking_spectrum runs as it is"),
+        ("overturning_spectrum", {"scale": [1, 2], "PGA": ["2 m/s^2"]}, "give scale alone"),
+    ],
+)
+def test_axes_that_scale_the_motion_of_a_spectrum_are_refused_with_advice(name, arguments, match):
+    system = rf.System(rf.Block(width="0.5 m", height="2 m", mass="400 kg"))
+    pulse = rf.GroundMotion.sine_pulse("2 m/s^2", "1 Hz")
+    with pytest.raises(StudyError, match=match):
+        getattr(rf, name)(system, pulse, periods=["2 s"], **arguments)
+
+
+@pytest.mark.parametrize(
+    ("name", "arguments"),
+    [
+        ("rocking_spectrum", {"periods": ["2 m"]}),
+        ("overturning_map", {"amplitude": (["0.5 m/s"]), "frequency": ["1 Hz"]}),
+        ("incremental_dynamic_analysis", {"scale": ["1 m", "2 m"]}),
+    ],
+)
+def test_a_value_with_another_unit_is_refused_by_the_analysis_that_was_called(name, arguments):
+    system = rf.System(rf.Block(width="0.5 m", height="2 m", mass="400 kg"))
+    pulse = rf.GroundMotion.sine_pulse("2 m/s^2", "1 Hz")
+    with pytest.raises(UnitsError, match=f"^{name}: "):
+        getattr(rf, name)(system, pulse, **arguments)

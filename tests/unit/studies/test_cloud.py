@@ -182,6 +182,14 @@ def test_curve_above_one_half_everywhere_has_zero_median_bound(base):
     assert found.median_intensity_lower_bound == 0.0
 
 
+def test_response_that_falls_with_the_intensity_is_said_to_fall(base):
+    runs = synthetic_runs(base, falls=False)
+    found = rf.cloud_analysis(runs.assign_coords(weakness=1.0 / runs.strength), "weakness")
+    assert found.regression_slope < 0.0
+    assert f"falls with power {-found.regression_slope.item():.3g} of" in found.verdict
+    assert (found.fragility_status[:-1] == FragilityStatus.NOT_RISING).all()
+
+
 @pytest.mark.parametrize("of", ["rest", "overturning"])
 def test_runs_that_do_not_rise_with_intensity_have_no_curve(base, of):
     rng = np.random.default_rng(3)

@@ -387,3 +387,17 @@ def test_verdict_names_the_only_structure_with_a_fragility():
     assert np.isnan(both.annual_rate.values.ravel()).tolist() == [False, True]
     alone = "overturning, of the one of 2 structures that has a fragility"
     assert both.attrs["verdict"] == one.attrs["verdict"].replace("overturning", alone)
+
+
+def test_rate_of_another_state_is_said_where_there_is_none_of_overturning():
+    pulses = [rf.GroundMotion.sine_pulse(f"{a} m/s^2", f"{f} Hz") for a in (2, 3) for f in (1, 2)]
+    block = rf.System(rf.Block(width="2 m", height="6 m", mass="20 t"))
+    runs = rf.sweep(block, pulses, scale=[1.0, 2.0], free_vibration="2 s", progress=False)
+    found = rf.fragility(runs, "PGA", limits=["uplift", 0.9])
+    assert found.fragility_status[0] != found.fragility_status[-1]  # the block never overturns
+    with warnings.catch_warnings(action="ignore", category=ModelWarning):
+        rates = rf.annual_rate(found, TABLE)
+    assert rates.annual_rate.notnull().values.tolist() == [True, False, False]
+    assert rates.verdict.startswith("There is no fragility against overturning, and so no rate. ")
+    uplift = rates.annual_rate[0].item()
+    assert f"Annual rate of uplift: {uplift:.3g}, a return period" in rates.verdict

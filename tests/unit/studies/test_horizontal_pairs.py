@@ -66,6 +66,7 @@ def test_a_pair_where_one_motion_is_needed_is_refused_with_advice():
         lambda: rf.codes.circolare_2019(system, pair),
         lambda: rf.codes.circolare_2019(system, {"both": pair}),
         lambda: rf.intensity_measures(pair),
+        lambda: rf.MotionSuite({"both": pair}),
     ):
         with pytest.raises(RockframeError, match=r"in one direction: pair.first, or pair.rotated"):
             call()
