@@ -196,6 +196,32 @@ def test_damaged_labels_raise_and_are_rebuilt(copied, complete):
     assert labels.read_bytes() == plain
 
 
+def test_labels_of_another_study_are_refused(copied, tmp_path):
+    other, labels = tmp_path / "other", copied / "labels.arrays"
+    run_sweep(other, scale=SCALES + 1.0)
+    labels.write_bytes((other / "labels.arrays").read_bytes())
+    for read in (rf.open_study, run_sweep):
+        with pytest.raises(StudyError, match=r"labels of another study.*remove the file"):
+            read(copied)
+    labels.unlink()
+    assert run_sweep(copied).scale.values.tolist() == SCALES.tolist()
+
+
+def test_of_two_studies_begun_at_once_in_a_folder_the_first_keeps_its_labels(tmp_path, monkeypatch):
+    folder, plain, first = tmp_path / "study", write_atomically, []
+
+    def write(path, *arguments, **options):
+        if not first:
+            first.append(path)
+            run_sweep(folder, scale=SCALES[:3])
+        plain(path, *arguments, **options)
+
+    monkeypatch.setattr(store, "write_atomically", write)
+    with pytest.raises(StudyError, match="another study"):
+        run_sweep(folder, scale=SCALES[3:6])
+    assert rf.open_study(folder).scale.values.tolist() == SCALES[:3].tolist()
+
+
 def test_study_of_another_version_can_be_read_but_not_resumed(copied, complete):
     head, last = copied / "study.json", copied / "chunk-000039.arrays"
     head.write_text(
@@ -226,6 +252,14 @@ def test_a_folder_without_a_study_is_refused(tmp_path):
     (tmp_path / "file").write_text("")
     with pytest.raises(StudyError, match="cannot be kept in"):
         run_sweep(tmp_path / "file")
+
+
+def test_a_folder_may_be_in_that_of_the_user(copied, monkeypatch):
+    for variable in ("HOME", "USERPROFILE"):
+        monkeypatch.setenv(variable, str(copied.parent))
+    assert rf.open_study(f"~/{copied.name}").sizes["scale"] == len(SCALES)
+    with pytest.raises(StudyError, match="store must be the path of a folder, got '~no user/a'"):
+        rf.open_study("~no user/a")
 
 
 @pytest.mark.skipif(not hasattr(os, "geteuid"), reason="permissions as of Unix")
