@@ -6,6 +6,7 @@ import re
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from contextlib import closing, suppress
 from dataclasses import replace
+from functools import partial
 from math import floor
 from pathlib import Path
 from tempfile import TemporaryDirectory
@@ -255,7 +256,8 @@ class Outputs:
         if path is None:
             return
         if str(path) == STREAM:
-            self._answer.set_stdout_file(_content_bytes(content, kind.suffixes[0]))
+            save = partial(write_file, kind=kind, content=content)
+            self._answer.set_stdout_file(_saved_bytes(save, kind.suffixes[0]))
             return
         write_file(path, kind, content, **self._write_options)
         self._answer.add_file(title, path)
@@ -269,7 +271,7 @@ class Outputs:
     ) -> None:
         """Write by a function of a path to a file, or to the standard output; report the file."""
         if str(path) == STREAM:
-            self._answer.set_stdout_file(_content_bytes(save, ending))
+            self._answer.set_stdout_file(_saved_bytes(save, ending))
             return
         if Path(path).suffix.lower() == ending.lower():  # `save` refuses other endings
             check_not_read(path, self._write_options["read"])
@@ -281,13 +283,11 @@ class Outputs:
         self.write(*self._named_files["csv"], "Table", lambda part: values.to_csv(part))
 
 
-def _content_bytes(content: Content, ending: str) -> bytes:
+def _saved_bytes(save: Callable[[Path], object], ending: str) -> bytes:
     """Return the bytes of a file whose name has an ending."""
-    if isinstance(content, bytes):
-        return content
     with TemporaryDirectory() as folder:
         part = Path(folder) / f"file{ending}"
-        content(part)
+        save(part)
         return part.read_bytes()
 
 
