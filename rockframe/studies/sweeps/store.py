@@ -243,7 +243,7 @@ class Store:
         """Read the results of a chunk."""
         file = self._file(chunk)
         described, arrays = read_arrays(file)
-        texts = described.pop("texts")
+        texts = described.pop("texts", ())
         if described != self._described(chunk):
             msg = (
                 f"{file}: found a chunk of another study; expected one of the study beside it, "
@@ -266,14 +266,15 @@ class Store:
 
     def contents(self) -> tuple[dict[str, tuple[int, ...]], int]:
         """Return the stored scalars and histories, with their shapes per case; count chunks."""
-        files = [*self.folder.glob(f"{_FOLDERS if self.in_folders else ''}chunk-*.arrays")]
+        files = [self._file(chunk) for chunk in self.chunks() if self.has(chunk)]
         shapes: dict[str, tuple[int, ...]] = {}
         for file in files:
             for name, shape in read_shapes(file).items():
-                plain = name.removeprefix(_SCALAR).removeprefix(_HISTORY)
-                # of unlike numbers of bodies or restrainers there is room for the most
-                shapes[plain] = tuple(map(max, shapes.get(plain, shape[1:]), shape[1:]))
-        return {name: shapes[name] for name in shapes if name not in _CHUNK_ARRAYS}, len(files)
+                if name.startswith((_SCALAR, _HISTORY)):
+                    plain = name.removeprefix(_SCALAR).removeprefix(_HISTORY)
+                    # of unlike numbers of bodies or restrainers there is room for the most
+                    shapes[plain] = tuple(map(max, shapes.get(plain, shape[1:]), shape[1:]))
+        return shapes, len(files)
 
     def labels(self) -> SweepLabels:
         """Read the labels of the study."""
@@ -315,7 +316,7 @@ class Store:
     def _read_labels(self) -> tuple[dict[str, Any], dict[str, AnyArray]]:
         file = self.folder / _LABELS
         described, arrays = read_arrays(file)
-        if described["attributes"]["study_sha256"] != self.digest:
+        if described.get("attributes", {}).get("study_sha256") != self.digest:
             msg = (
                 f"{file}: found labels of another study; expected those of the study beside it, "
                 f"{self.digest[:12]}...; {_REMEDY}"

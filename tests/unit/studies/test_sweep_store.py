@@ -207,6 +207,23 @@ def test_labels_of_another_study_are_refused(copied, tmp_path):
     assert run_sweep(copied).scale.values.tolist() == SCALES.tolist()
 
 
+@pytest.mark.parametrize("lazy", [False, True])
+def test_a_file_of_a_study_in_the_place_of_another_is_refused(copied, complete, lazy):
+    labels, chunk = copied / "labels.arrays", copied / "chunk-000004.arrays"
+    kept = {file: file.read_bytes() for file in (labels, chunk)}
+    for file, other, words in (
+        (labels, chunk, "labels of another study"),
+        (chunk, labels, "a chunk of another study"),
+    ):
+        file.write_bytes(kept[other])
+        with pytest.raises(StudyError, match=words):
+            rf.open_study(copied, lazy=lazy).load()
+        file.write_bytes(kept[file])
+    chunk.with_name("chunk-000099.arrays").write_bytes(kept[labels])  # none of its own
+    found = rf.open_study(copied, lazy=lazy).peak_rotation
+    np.testing.assert_array_equal(found, complete[1].peak_rotation)
+
+
 def test_of_two_studies_begun_at_once_in_a_folder_the_first_keeps_its_labels(tmp_path, monkeypatch):
     folder, plain, first = tmp_path / "study", write_atomically, []
 
