@@ -220,7 +220,8 @@ class Store:
             arrays |= {f"{kind}{name}": values for name, values in sorted(columns.items())}
         file = self._file(chunk)
         try:
-            file.parent.mkdir(exist_ok=True)
+            if self.in_folders:
+                file.parent.mkdir(exist_ok=True)
             write_arrays(file, self._described(chunk) | {"texts": rows.texts}, arrays)
         except OSError as problem:
             msg = (

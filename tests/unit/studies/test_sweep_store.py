@@ -71,6 +71,20 @@ def test_it_can_be_read_while_it_runs(tmp_path):
     assert 0 < max(counts) < 12  # either of two threads may read first
 
 
+def test_a_folder_that_is_renamed_while_it_runs_is_not_made_again(tmp_path):
+    folder, moved = tmp_path / "study", tmp_path / "moved"
+
+    def scene(height):
+        if (folder / "chunk-000001.arrays").exists():
+            folder.rename(moved)
+        return rf.System(BLOCK.replace(height=height))
+
+    with pytest.raises(StudyError, match="cannot be written"):
+        rf.sweep(scene, PULSE, height=(np.linspace(3, 4, 12), "m"), chunk=1, store=folder)
+    assert not folder.exists()
+    assert (moved / "chunk-000001.arrays").exists()
+
+
 def test_case_is_restored_from_the_folder_alone(complete, monkeypatch):
     folder, runs = complete
     monkeypatch.setattr(studies_at_hand, "_cache", type(studies_at_hand._cache)())
