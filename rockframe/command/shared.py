@@ -314,7 +314,9 @@ def _open_result(place: Path, path: str) -> xr.Dataset:
     try:
         with xr.open_dataset(place) as dataset:
             return dataset.load()
-    except (OSError, ValueError) as problem:
+    except MemoryError:
+        raise
+    except Exception as problem:  # damaged files raise exceptions that are not documented
         raise FileError(path, f"this is no netCDF file; {_RESULT_HINT}") from problem
 
 
