@@ -99,6 +99,9 @@ def write_file(
     except OSError as problem:
         words = f"it cannot be written ({problem.strerror or problem})"
         raise FileError(os.fspath(path), words) from problem
+    except RuntimeError as problem:  # of netCDF, which does not say why
+        words = f"it cannot be written ({problem}); the disk may be full"
+        raise FileError(os.fspath(path), words) from problem
     finally:
         with suppress(OSError):
             part.unlink(missing_ok=True)

@@ -6,6 +6,7 @@ import re
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from contextlib import closing, suppress
 from dataclasses import replace
+from functools import partial
 from math import floor
 from pathlib import Path
 from tempfile import TemporaryDirectory
@@ -258,7 +259,8 @@ class Outputs:
         if path is None:
             return
         if str(path) == STREAM:
-            self._answer.data = _content_bytes(content, kind.suffixes[0])
+            save = partial(write_file, kind=kind, content=content)
+            self._answer.data = _saved_bytes(save, kind.suffixes[0])
             return
         write_file(path, kind, content, **self._write_options)
         self._answer.add_file(title, path)
@@ -277,7 +279,7 @@ class Outputs:
     ) -> None:
         """Write by a function of a path to a file, or to the standard output; report the file."""
         if str(path) == STREAM:
-            self._answer.data = _content_bytes(save, ending)
+            self._answer.data = _saved_bytes(save, ending)
             return
         checked_path(path, kind, **self._write_options)
         save(Path(path))
@@ -288,13 +290,11 @@ class Outputs:
         self.write(*self._named_files["csv"], "Table", lambda part: values.to_csv(part))
 
 
-def _content_bytes(content: Content, ending: str) -> bytes:
+def _saved_bytes(save: Callable[[Path], object], ending: str) -> bytes:
     """Return the bytes of a file whose name has an ending."""
-    if isinstance(content, bytes):
-        return content
     with TemporaryDirectory() as folder:
         part = Path(folder) / f"file{ending}"
-        content(part)
+        save(part)
         return part.read_bytes()
 
 
@@ -321,7 +321,9 @@ def _open_result(place: Path, path: str) -> xr.Dataset:
     try:
         with xr.open_dataset(place) as dataset:
             return dataset.load()
-    except (OSError, ValueError) as problem:
+    except MemoryError:
+        raise
+    except Exception as problem:  # damaged files raise exceptions that are not documented
         raise FileError(path, f"this is no netCDF file; {_RESULT_HINT}") from problem
 
 

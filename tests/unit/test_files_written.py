@@ -250,6 +250,19 @@ def test_file_is_written_completely_or_left_unchanged(tmp_path):
     assert sorted(tmp_path.iterdir()) == [link, path]
 
 
+@pytest.mark.parametrize("output", ["new.nc", "-"])
+def test_netcdf_that_does_not_fit_on_the_disk_is_reported(folder, output, capsys):
+    resource = pytest.importorskip("resource", reason="limits as of Unix")
+    before = resource.getrlimit(resource.RLIMIT_FSIZE)
+    resource.setrlimit(resource.RLIMIT_FSIZE, (20_000, before[1]))
+    try:
+        assert main(["run", "scene.toml", "-o", output]) == 2
+    finally:
+        resource.setrlimit(resource.RLIMIT_FSIZE, before)
+    assert "cannot be written (NetCDF: HDF error); the disk may be full" in capsys.readouterr().err
+    assert not [*folder.glob("*new.nc"), *folder.glob(".*.nc")]
+
+
 @pytest.mark.parametrize(
     "closed",
     [pytest.param("|head", marks=pytest.mark.long), pytest.param("full", marks=pytest.mark.wide)],

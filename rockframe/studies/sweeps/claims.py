@@ -95,12 +95,13 @@ class Claims:
 
     def _is_dead(self, claim: Path) -> bool:
         """Whether the job that made a claim no longer exists."""
+        with suppress(OSError):  # of a claim that cannot be read, its age decides
+            if _has_ended(claim.read_bytes()):
+                return True
         try:
-            changed, content = claim.stat().st_mtime_ns, claim.read_bytes()
+            changed = claim.stat().st_mtime_ns
         except OSError:  # given up at this moment
             return False
-        if _has_ended(content):
-            return True
         now = time.monotonic()
         before, since = self._last_changes.get(claim, (changed, now))
         if before != changed:
@@ -138,7 +139,7 @@ def _has_ended(content: bytes) -> bool:
     try:
         job = json.loads(content)
         machine, process, begun = job["machine"], int(job["process"]), job["begun"]
-    except (ValueError, TypeError, KeyError):  # damaged, or not yet written: its age decides
+    except (ValueError, TypeError, KeyError, OverflowError):  # damaged: its age decides
         return False
     return begun is not None and machine == _machine() and _start_of_process(process) != begun
 

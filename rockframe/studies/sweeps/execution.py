@@ -115,9 +115,16 @@ def _make_bar(value: object, owner: str, unit: str) -> ProgressBar:
         raise ComponentError(msg) from problem
     kind: Any = auto.tqdm
     in_a_notebook = any("notebook" in base.__module__ for base in kind.__mro__)
-    if value is None and not (in_a_notebook or sys.stderr.isatty()):
+    if value is None and not (in_a_notebook or _in_a_terminal()):
         return _NoBar()
     return _Bar(kind, owner, unit, _DELAY if value is None else 0.0)
+
+
+def _in_a_terminal() -> bool:
+    try:
+        return sys.stderr.isatty()
+    except (AttributeError, ValueError):  # there is none, or it is closed
+        return False
 
 
 _CHUNKS_PER_WORKER: Final = 2

@@ -103,6 +103,8 @@ class _Column(BackendArray):
         of_chunk = numbers // self._stored.chunk
         order = np.argsort(of_chunk, kind="stable")
         used, firsts = np.unique(of_chunk[order], return_index=True)
+        if not all(self._stored.has(self._stored.chunk_at(number)) for number in used.tolist()):
+            self._stored.check_folder()  # not yet run, unless the folder has been moved
         for number, places in zip(used.tolist(), np.split(order, firsts)[1:], strict=True):
             chunk = self._stored.chunk_at(number)
             if self._stored.has(chunk):

@@ -151,8 +151,7 @@ class Store:
     def open_or_create(cls, path: Path, study: Study, chunk: int) -> "Store":
         """Open the folder of a study, or make it."""
         with _writing_to(path):
-            if not (path / _STUDY).exists():
-                _create(path, study, chunk)
+            _create(path, study, chunk)
             for part in (*path.glob(".*.part"), *path.glob(f"{_FOLDERS}.*.part")):
                 with suppress(OSError):
                     if time.time() - part.stat().st_mtime > _STALE_AGE:
@@ -173,9 +172,9 @@ class Store:
                 f"or by values along its axes, give known={str(path)!r} too"
             )
             raise StudyError(msg)
-        if not (path / _LABELS).exists():  # removed, as damaged files should be
+        if not (path / _LABELS).exists():  # new, or removed, as damaged files should be
             with _writing_to(path):
-                _create(path, study, head["cases_of_a_chunk"])
+                _write_labels(path, study)
         return cls._from_head(path, head)
 
     @classmethod
@@ -221,7 +220,8 @@ class Store:
             arrays |= {f"{kind}{name}": values for name, values in sorted(columns.items())}
         file = self._file(chunk)
         try:
-            file.parent.mkdir(exist_ok=True)
+            if self.in_folders:
+                file.parent.mkdir(exist_ok=True)
             write_arrays(file, self._described(chunk) | {"texts": rows.texts}, arrays)
         except OSError as problem:
             msg = (
@@ -244,7 +244,7 @@ class Store:
         """Read the results of a chunk."""
         file = self._file(chunk)
         described, arrays = read_arrays(file)
-        texts = described.pop("texts")
+        texts = described.pop("texts", ())
         if described != self._described(chunk):
             msg = (
                 f"{file}: found a chunk of another study; expected one of the study beside it, "
@@ -267,18 +267,19 @@ class Store:
 
     def contents(self) -> tuple[dict[str, tuple[int, ...]], int]:
         """Return the stored scalars and histories, with their shapes per case; count chunks."""
-        files = [*self.folder.glob(f"{_FOLDERS if self.in_folders else ''}chunk-*.arrays")]
+        files = [self._file(chunk) for chunk in self.chunks() if self.has(chunk)]
         shapes: dict[str, tuple[int, ...]] = {}
         for file in files:
             for name, shape in read_shapes(file).items():
-                plain = name.removeprefix(_SCALAR).removeprefix(_HISTORY)
-                # of unlike numbers of bodies or restrainers there is room for the most
-                shapes[plain] = tuple(map(max, shapes.get(plain, shape[1:]), shape[1:]))
-        return {name: shapes[name] for name in shapes if name not in _CHUNK_ARRAYS}, len(files)
+                if name.startswith((_SCALAR, _HISTORY)):
+                    plain = name.removeprefix(_SCALAR).removeprefix(_HISTORY)
+                    # of unlike numbers of bodies or restrainers there is room for the most
+                    shapes[plain] = tuple(map(max, shapes.get(plain, shape[1:]), shape[1:]))
+        return shapes, len(files)
 
     def labels(self) -> SweepLabels:
         """Read the labels of the study."""
-        described, arrays = read_arrays(self.folder / _LABELS)
+        described, arrays = self._read_labels()
         axes, columns = (
             tuple(
                 Axis.from_dict(axis, arrays[axis["name"]] if words is None else np.array(words))
@@ -297,7 +298,7 @@ class Store:
 
     def motions(self) -> dict[str, GroundMotion | None]:
         """Read the motions of the study."""
-        described, arrays = read_arrays(self.folder / _LABELS)
+        described, arrays = self._read_labels()
         for k, (_, description) in enumerate(described["motions"]):
             for component, held in _sampled_components(description).items():
                 for what in held:
@@ -306,6 +307,23 @@ class Store:
             name: None if description is None else GroundMotion.from_dict(description)
             for name, description in described["motions"]
         }
+
+    def check_folder(self) -> None:
+        """Raise an error if the folder does not hold the study any more."""
+        if _read_head(self.folder)["study_sha256"] != self.digest:
+            msg = f"{self.folder}: found another study than before, {self.digest[:12]}..."
+            raise StudyError(msg)
+
+    def _read_labels(self) -> tuple[dict[str, Any], dict[str, AnyArray]]:
+        file = self.folder / _LABELS
+        described, arrays = read_arrays(file)
+        if described.get("attributes", {}).get("study_sha256") != self.digest:
+            msg = (
+                f"{file}: found labels of another study; expected those of the study beside it, "
+                f"{self.digest[:12]}...; {_REMEDY}"
+            )
+            raise StudyError(msg)
+        return described, arrays
 
     def _file(self, chunk: Chunk) -> Path:
         file = f"chunk-{chunk.number:06d}.arrays"
@@ -332,8 +350,26 @@ def _writing_to(folder: Path) -> Generator[None]:
 
 
 def _create(path: Path, study: Study, chunk: int) -> None:
-    """Write what a study is; ``study.json`` comes last, and stays what it is."""
+    """Write what a study is, unless the folder has one, which stays what it is."""
+    if (path / _STUDY).exists():
+        return
     path.mkdir(parents=True, exist_ok=True)
+    many = study.grid.count > MAX_FILES_PER_FOLDER * chunk
+    head = {
+        "format": FOLDER_FORMAT if many else FORMAT,
+        "rockframe_version": __version__,
+        "history": history_line("begun"),
+        "study_sha256": study.digest,
+        "cases": study.grid.count,
+        "cases_of_a_chunk": chunk,
+        "study": study.to_dict(),
+    }
+    text = json.dumps(head, indent=1)
+    write_atomically(path / _STUDY, f"{text}\n".encode(), replace=False)
+
+
+def _write_labels(path: Path, study: Study) -> None:
+    """Write axes and motions; only once the folder is that of the study, not of another job's."""
     labels = sweep_labels(study)
     arrays: dict[str, AnyArray] = {}
     described: dict[str, Any] = {
@@ -355,18 +391,6 @@ def _create(path: Path, study: Study, chunk: int) -> None:
                 held[what] = None
         described["motions"].append((name, description))
     write_arrays(path / _LABELS, described, arrays)
-    many = study.grid.count > MAX_FILES_PER_FOLDER * chunk
-    head = {
-        "format": FOLDER_FORMAT if many else FORMAT,
-        "rockframe_version": __version__,
-        "history": history_line("begun"),
-        "study_sha256": study.digest,
-        "cases": study.grid.count,
-        "cases_of_a_chunk": chunk,
-        "study": study.to_dict(),
-    }
-    text = json.dumps(head, indent=1)
-    write_atomically(path / _STUDY, f"{text}\n".encode(), replace=False)
 
 
 def _word_values(axis: Axis) -> list[str] | None:

@@ -4,6 +4,7 @@ import math
 import time
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from concurrent.futures import Executor
+from contextlib import suppress
 from dataclasses import replace
 from os import PathLike
 from pathlib import Path
@@ -340,6 +341,7 @@ def _run_with_store(
     if missing:
         stored.check_writable()
     if some:  # before hours of work
+        stored.labels()
         for _ in stored.results():
             pass
     done = study.grid.count - sum(len(chunk.cases) for chunk in missing)
@@ -406,6 +408,8 @@ def stored_dataset(stored: Store, *, lazy: bool) -> xr.Dataset:
 def read_folder(path: object, *, owner: str = "") -> Path:
     """Read the argument ``store``, of a function that is named in messages, if there is one."""
     if isinstance(path, PathLike) or (isinstance(path, str) and path):
-        return Path(path)  # pyright: ignore[reportUnknownArgumentType]
+        with suppress(RuntimeError):  # of a user without a home
+            # a program may change its folder while it runs, or before it reads lazily
+            return Path(path).expanduser().absolute()  # pyright: ignore[reportUnknownArgumentType]
     words = f"store must be the path of a folder, got {short_repr(path)}"
     raise StudyError(f"{owner}: {words}" if owner else words)

@@ -8,7 +8,9 @@ import subprocess
 import sys
 from pathlib import Path
 
+import numpy as np
 import pytest
+import xarray as xr
 
 import rockframe as rf
 from rockframe.command.files.templates import TEMPLATES
@@ -121,6 +123,18 @@ def run_files(tmp_path_factory):
     assert main(["run", str(place / "scene.toml"), "-o", str(place / "run.nc")]) == 0
     rf.GroundMotion.sine_pulse("-4 m/s^2", "1 Hz").to_dataset().to_netcdf(place / "record.nc")
     return {name: (place / name).read_bytes() for name in ("run.nc", "record.nc")}
+
+
+def test_a_result_whose_values_are_damaged_is_refused(tmp_path, monkeypatch, capsys):
+    monkeypatch.chdir(tmp_path)
+    runs = xr.Dataset({"rotation": ("time", np.zeros(1000))})
+    runs.to_netcdf("run.nc", encoding={"rotation": {"zlib": True}})
+    content = bytearray(Path("run.nc").read_bytes())
+    start = content.rindex(b"\x78\x5e")  # of compressed values
+    content[start : start + 8] = bytes(8)
+    Path("run.nc").write_bytes(content)
+    assert main(["report", "run.nc"]) == 2
+    assert "run.nc: this is no netCDF file" in capsys.readouterr().err
 
 
 @pytest.fixture

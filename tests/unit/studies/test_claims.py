@@ -157,6 +157,7 @@ SILENT = {
     "no text": bytes(range(256)),
     "other words": b"[1, 2]",
     "other entries": {"machine": module._machine(), "process": "x", "begun": 1},
+    "infinite": {"machine": module._machine(), "process": float("inf"), "begun": 1},
 }
 
 
@@ -177,6 +178,15 @@ def test_claims_expire_after_the_timeout(tmp_path, monkeypatch, content):
     assert not other.take(7)  # the other job has not been watching for so long
     assert one.take(7)
     assert not other.take(7)
+
+
+def test_a_claim_that_cannot_be_read_expires(tmp_path, monkeypatch):
+    (tmp_path / "claims" / "000007-000").mkdir(parents=True)  # like a file of another user
+    one, now = Claims(tmp_path), [1000.0]
+    monkeypatch.setattr(module.time, "monotonic", lambda: now[0])
+    assert not one.take(7)
+    now[0] += 1.1 * module._TIMEOUT
+    assert one.take(7)
 
 
 def test_living_job_renews_its_claims(tmp_path, monkeypatch):

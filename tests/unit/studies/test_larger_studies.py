@@ -155,6 +155,22 @@ def test_missing_chunks_appear_as_gaps(tmp_path, has_dask):
 
 
 @pytest.mark.filterwarnings("ignore::rockframe.errors.SolverWarning")
+def test_a_folder_that_is_not_found_again_is_no_gap(tmp_path, monkeypatch, has_dask):
+    monkeypatch.chdir(tmp_path)
+    in_memory, lazy = on_a_grid(store="study"), rf.open_study("study", lazy=True)
+    monkeypatch.chdir("/")  # what is read later is where it was
+    assert_equal_lazily(lazy, in_memory)
+    lazy_dataset._rows.cache_clear()
+    (tmp_path / "study").rename(tmp_path / "moved")
+    with pytest.raises(StudyError, match="found no study"):
+        lazy.peak_rotation.load()
+    of_a_table(store=tmp_path / "study")
+    (tmp_path / "study" / "chunk-000001.arrays").unlink()
+    with pytest.raises(StudyError, match="another study"):
+        lazy.status.isel(motion=1, scale=0).load()
+
+
+@pytest.mark.filterwarnings("ignore::rockframe.errors.SolverWarning")
 def test_damaged_chunks_raise_when_read(tmp_path):
     on_a_grid(store=tmp_path / "study")
     file = tmp_path / "study" / "chunk-000001.arrays"

@@ -1,5 +1,6 @@
 """One progress bar over all runs of an analysis, whose total grows with its rounds."""
 
+import io
 import sys
 import types
 
@@ -105,6 +106,15 @@ def test_no_bar_is_shown_without_a_terminal(bars, capsys):
     ANALYSES["overturning_map"](progress=False)
     assert not bars
     assert capsys.readouterr().err == ""
+
+
+def test_no_bar_is_shown_without_a_stream_of_errors(bars, monkeypatch):
+    closed = io.StringIO()
+    closed.close()
+    for stream in (None, closed):  # None in a program with windows
+        monkeypatch.setattr(sys, "stderr", stream)
+        rf.sweep(SYSTEM, PULSE, scale=[1, 2], **FAST)
+    assert not bars
 
 
 def test_a_bar_is_closed_when_something_fails(bars):

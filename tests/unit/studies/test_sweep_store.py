@@ -71,6 +71,20 @@ def test_it_can_be_read_while_it_runs(tmp_path):
     assert 0 < max(counts) < 12  # either of two threads may read first
 
 
+def test_a_folder_that_is_renamed_while_it_runs_is_not_made_again(tmp_path):
+    folder, moved = tmp_path / "study", tmp_path / "moved"
+
+    def scene(height):
+        if (folder / "chunk-000001.arrays").exists():
+            folder.rename(moved)
+        return rf.System(BLOCK.replace(height=height))
+
+    with pytest.raises(StudyError, match="cannot be written"):
+        rf.sweep(scene, PULSE, height=(np.linspace(3, 4, 12), "m"), chunk=1, store=folder)
+    assert not folder.exists()
+    assert (moved / "chunk-000001.arrays").exists()
+
+
 def test_case_is_restored_from_the_folder_alone(complete, monkeypatch):
     folder, runs = complete
     monkeypatch.setattr(studies_at_hand, "_cache", type(studies_at_hand._cache)())
@@ -196,6 +210,49 @@ def test_damaged_labels_raise_and_are_rebuilt(copied, complete):
     assert labels.read_bytes() == plain
 
 
+def test_labels_of_another_study_are_refused(copied, tmp_path):
+    other, labels = tmp_path / "other", copied / "labels.arrays"
+    run_sweep(other, scale=SCALES + 1.0)
+    labels.write_bytes((other / "labels.arrays").read_bytes())
+    for read in (rf.open_study, run_sweep):
+        with pytest.raises(StudyError, match=r"labels of another study.*remove the file"):
+            read(copied)
+    labels.unlink()
+    assert run_sweep(copied).scale.values.tolist() == SCALES.tolist()
+
+
+@pytest.mark.parametrize("lazy", [False, True])
+def test_a_file_of_a_study_in_the_place_of_another_is_refused(copied, complete, lazy):
+    labels, chunk = copied / "labels.arrays", copied / "chunk-000004.arrays"
+    kept = {file: file.read_bytes() for file in (labels, chunk)}
+    for file, other, words in (
+        (labels, chunk, "labels of another study"),
+        (chunk, labels, "a chunk of another study"),
+    ):
+        file.write_bytes(kept[other])
+        with pytest.raises(StudyError, match=words):
+            rf.open_study(copied, lazy=lazy).load()
+        file.write_bytes(kept[file])
+    chunk.with_name("chunk-000099.arrays").write_bytes(kept[labels])  # none of its own
+    found = rf.open_study(copied, lazy=lazy).peak_rotation
+    np.testing.assert_array_equal(found, complete[1].peak_rotation)
+
+
+def test_of_two_studies_begun_at_once_in_a_folder_the_first_keeps_its_labels(tmp_path, monkeypatch):
+    folder, plain, first = tmp_path / "study", write_atomically, []
+
+    def write(path, *arguments, **options):
+        if not first:
+            first.append(path)
+            run_sweep(folder, scale=SCALES[:3])
+        plain(path, *arguments, **options)
+
+    monkeypatch.setattr(store, "write_atomically", write)
+    with pytest.raises(StudyError, match="another study"):
+        run_sweep(folder, scale=SCALES[3:6])
+    assert rf.open_study(folder).scale.values.tolist() == SCALES[:3].tolist()
+
+
 def test_study_of_another_version_can_be_read_but_not_resumed(copied, complete):
     head, last = copied / "study.json", copied / "chunk-000039.arrays"
     head.write_text(
@@ -226,6 +283,14 @@ def test_a_folder_without_a_study_is_refused(tmp_path):
     (tmp_path / "file").write_text("")
     with pytest.raises(StudyError, match="cannot be kept in"):
         run_sweep(tmp_path / "file")
+
+
+def test_a_folder_may_be_in_that_of_the_user(copied, monkeypatch):
+    for variable in ("HOME", "USERPROFILE"):
+        monkeypatch.setenv(variable, str(copied.parent))
+    assert rf.open_study(f"~/{copied.name}").sizes["scale"] == len(SCALES)
+    with pytest.raises(StudyError, match="store must be the path of a folder, got '~no user/a'"):
+        rf.open_study("~no user/a")
 
 
 @pytest.mark.skipif(not hasattr(os, "geteuid"), reason="permissions as of Unix")
