@@ -166,12 +166,12 @@ MEASURE_COMPARISON: Final = (
 HAZARD: Final = (
     *rows_over(
         (),
-        annual_rate="mean rate at which the limit state is exceeded [year^-1]",
-        **bounds("annual_rate", "annual rate by the {} bound of the fragility [year^-1]"),
+        annual_rate="number of times a year that the limit state is exceeded on average",
+        **bounds("annual_rate", "annual rate by the {} bound of the fragility"),
         unreached_rate_below="annual rate from intensities below the hazard curve, if its first "
-        "power law continues [year^-1]",
+        "power law continues",
         unreached_rate_above="annual rate from intensities above the hazard curve, if its last "
-        "power law continues [year^-1]",
+        "power law continues",
         outside_trials_share="share of the annual rate from intensities beyond those of all trials",
     ),
     *rows_over(

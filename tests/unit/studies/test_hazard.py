@@ -222,7 +222,7 @@ def test_the_unit_of_hazard_rates_counts(curve, unit, size):
     for hazard_curve in hazards:
         found = rf.annual_rate(curve, hazard_curve).annual_rate
         assert found.item() == pytest.approx(expected.item(), rel=1e-12)
-    assert expected.attrs["units"] == "year^-1"
+    assert expected.attrs["units"] == "1"  # a year differs between libraries of units
 
 
 def test_probabilities_of_hazard_may_be_percentages(curve):
