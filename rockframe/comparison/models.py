@@ -121,8 +121,8 @@ def model_ladder(system: System) -> dict[str, System]:
                 parts = {**{slot: components[slot] for slot in slots}, **bases}
                 if "ground" in components:
                     parts["ground"] = components["ground"]
-                # on rigid ground, or held against sliding, a squat body would not rock
-                rocks = not squat or not (slides or {"pads", "soil"}.isdisjoint(parts))
+                # where it is held and strikes its base, a squat body would not rock
+                rocks = not squat or ("soil" in parts and "pads" not in parts and not slides)
                 words = name.format(**_base_names(bases))
                 for rotation in dict.fromkeys((Rotation.SMALL, system.rotation)):
                     last = f"{words}, small rotations" if rotation is Rotation.SMALL else words

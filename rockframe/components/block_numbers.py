@@ -137,7 +137,7 @@ def squat_body_warnings(si: BlockSI, owner: str) -> list[str]:
         f"{owner}: a block of H/B = {si.height / si.width:.4g} with shape factor "
         f"{si.shape_factor:.4g} cannot rock: its greatest restitution, Eq. (4), is "
         f"{si.maximum_restitution:.4g}; a solid rectangle needs H/B above sqrt(2)/2 = 0.7071. On "
-        "RigidGround(friction=...) it slides; pads and soil need no such restitution"
+        "RigidGround(friction=...), or pads with friction, it slides; soil needs no restitution"
     ]
 
 

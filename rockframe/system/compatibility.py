@@ -293,9 +293,9 @@ def size_faults(parts: Parts, options: Options) -> list[str]:
     """Return the faults of the sizes of parts that are together."""
     block, cap = parts.block, parts.cap
     faults: list[str] = []
-    # a squat body may land flat if it slides, or stands in a stack; a soft base stops it gradually
-    soft = parts.pads is not None or parts.soil is not None
-    if block is not None and not (soft or parts.own or _block_slides(parts, options)):
+    # a squat body may land flat if it slides, or stands in a stack; soil stops it without impact
+    on_soil = parts.soil is not None and parts.pads is None
+    if block is not None and not (on_soil or parts.own or _block_slides(parts, options)):
         faults += squat_body_warnings(block.si, type(block).__name__)
     if parts.links:
         faults += _tendon_and_wall_faults(parts)

@@ -26,7 +26,6 @@ def with_small(names):
         ((BLOCK, SOIL), {}, ("rigid ground", "soil")),
         ((BLOCK, CAP, SOIL), {}, ("rigid ground", "soil", "cap and soil")),
         # too squat to rock on rigid ground
-        ((BLOCK.replace(height="2 m"), PADS), {}, ("two pads",)),
         ((BLOCK.replace(height="2 m"), SOIL), {}, ("soil",)),
     ],
 )

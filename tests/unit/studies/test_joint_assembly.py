@@ -174,14 +174,14 @@ def test_invalid_cases_have_the_same_messages_in_joint_assembly(monkeypatch):
     rng = np.random.default_rng(14)
     cases = table({**SIZE, **SCALE, "restitution": (0.5, 1.0, None)}, rng)
     heights = cases["Block.height [m]"]
-    heights[::7] = 0.5  # too squat to rock on rigid ground
-    heights[3] = 1e200  # an inertia that numbers cannot hold
+    heights[::7] = 0.5  # too squat to rock
+    heights[3] = 1e-200  # a vanishing inertia
     joint, alone, _ = run_both_ways(
         monkeypatch, rf.System(BLOCK, PADS), cases, record(), accuracy="fast"
     )
     assert_same(joint, alone)
     messages = {joint.texts[k] for k in joint.message}
-    assert any("moment of inertia" in text for text in messages)
+    assert any("cannot rock" in text for text in messages)
     assert any("exceeds eps_max" in text for text in messages)
 
 
