@@ -211,19 +211,21 @@ def _type_flags(joined: xr.Dataset) -> None:
 def _with_motions(rows: Sequence[xr.Dataset], dim: str, *, labelled: bool) -> list[xr.Dataset]:
     """Add the names of motions to rows as a coordinate, unless they are a shared attribute.
 
-    Labels tell runs apart that differ in the scale of a motion; without them its name must.
+    Labels tell runs apart that differ in the scale of a motion; without them the scale is added.
     """
     lacking = [row for row in rows if MOTION not in row.variables]
-    words = [motion_words(row.attrs) for row in lacking]
-    named = all(words)
-    names = {row.attrs.get(MOTION) for row in lacking} if labelled else {*words}
-    alike = len(lacking) == len(rows) and len(names) == 1
+    names = [row.attrs.get(MOTION) for row in lacking]
+    scaled = [motion_words(row.attrs) for row in lacking]
+    several_scales = len({*scaled}) > len({*names}) and (dim == MOTION or not labelled)
+    words = iter(scaled if several_scales else names)
+    named = all(isinstance(name, str) for name in names)
+    alike = len(lacking) == len(rows) and len({*names}) == 1 and not several_scales
     along_another = any(MOTION in row.dims for row in rows)
     if not named or (dim != MOTION and (alike or along_another)):
         return list(rows)
     return [
         row.assign_coords(
-            {MOTION: (dim, [motion_words(row.attrs)] * row.sizes[dim], SCHEMA[MOTION].attributes())}
+            {MOTION: (dim, [next(words)] * row.sizes[dim], SCHEMA[MOTION].attributes())}
         )
         if MOTION not in row.variables
         else row

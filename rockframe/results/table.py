@@ -10,7 +10,6 @@ import xarray as xr
 
 from rockframe.arguments import checked_choice, checked_dataset, is_iterable
 from rockframe.errors import SchemaError
-from rockframe.motion.display import motion_words
 from rockframe.results.schema import SCHEMA
 from rockframe.results.variables.bodies import BODY, RESTRAINER
 from rockframe.results.variables.requests import POINT
@@ -161,8 +160,8 @@ def _keys(runs: Mapping[Any, xr.Dataset]) -> pd.Index:
 def _labels(runs: Sequence[xr.Dataset]) -> pd.Index:
     """Return index labels of runs: motions, scalar coordinates and, if these repeat, a number."""
     levels: dict[str, list[Any]] = {}
-    motions = [motion_words(run.attrs) for run in runs]
-    if all(motions) and MOTION not in runs[0].coords:
+    motions = [run.attrs.get(MOTION) for run in runs]
+    if all(isinstance(name, str) for name in motions) and MOTION not in runs[0].coords:
         levels[MOTION] = motions
     for name in runs[0].coords:
         if all(name in run.coords and not run[name].dims for run in runs):

@@ -159,7 +159,7 @@ def test_scales_of_one_motion_are_told_apart(runs):
 
 def test_different_motions_become_a_coordinate(runs, tmp_path):
     other = run(STANDS, rf.GroundMotion.sine_pulse("1 m/s^2", "2 Hz"))
-    names = [f"{STANDS} times {one.attrs['motion']}" for one in (runs[STANDS], other)]
+    names = [one.attrs["motion"] for one in (runs[STANDS], other)]
     along = rf.concat([runs[STANDS], other])
     named = rf.concat({"first": runs[STANDS], "second": other})
     assert named.run.values.tolist() == ["first", "second"]
