@@ -216,7 +216,7 @@ def _with_motions(rows: Sequence[xr.Dataset], dim: str, *, labelled: bool) -> li
     lacking = [row for row in rows if MOTION not in row.variables]
     names = [row.attrs.get(MOTION) for row in lacking]
     scaled = [motion_words(row.attrs) for row in lacking]
-    several_scales = len({*scaled}) > len({*names}) and (dim == MOTION or not labelled)
+    several_scales = not labelled and len({*scaled}) > len({*names})
     words = iter(scaled if several_scales else names)
     named = all(isinstance(name, str) for name in names)
     alike = len(lacking) == len(rows) and len({*names}) == 1 and not several_scales
