@@ -38,8 +38,10 @@ FOREIGN_ARGUMENTS: Final = {
     "damping": "dampers belong to the parts, such as TwoSpringSupport(damping_ratio=0.1) or "
     "WinklerSoil(damping_ratio=0.2); a block on rigid ground loses energy in impacts, by "
     "RigidGround(restitution=...)",
+    "damping_ratio": "it belongs to the parts, such as TwoSpringSupport(damping_ratio=0.1)",
     "dt": _STEPS,
     "time_step": _STEPS,
+    "gravity": "it is an option of System(..., gravity='9.81 m/s^2')",
     "scale": "write simulate(motion.scaled(1.5))",
 }
 """Arguments that users may try and a run does not take, with what to write instead."""
