@@ -11,6 +11,7 @@ from rockframe.compiled.bound import bind as bind
 from rockframe.compiled.bound import bind_in_lanes as bind_in_lanes
 from rockframe.compiled.bound import numbers_in as numbers_in
 from rockframe.compiled.entries import COMPILED as COMPILED
+from rockframe.compiled.entries import after_each_call as after_each_call
 from rockframe.compiled.entries import background_entry as background_entry
 from rockframe.compiled.entries import compiled_within as compiled_within
 from rockframe.compiled.entries import compiling_for as compiling_for

@@ -10,7 +10,7 @@ from typing import Any, cast
 import numpy as np
 
 from rockframe.compiled.callbacks import call_machine_code, python_callback
-from rockframe.compiled.language import Vector, tuple_from
+from rockframe.compiled.language import AFTER_CALL, Vector, tuple_from
 from rockframe.compiled.sources import BoundSource, bound_source
 
 
@@ -57,8 +57,11 @@ class BoundFunction:
     def call(self, *arguments: Any) -> Any:
         """Call the function with its tuple, the numbers of which are the last argument."""
         if self.source.address:
-            return call_machine_code(self.source, [*_words_of(arguments)])
-        return self.source.function(self._bundle, *arguments[:-1])
+            result = call_machine_code(self.source, [*_words_of(arguments)])
+        else:
+            result = self.source.function(self._bundle, *arguments[:-1])
+        AFTER_CALL.get()()
+        return result
 
 
 def _words_of(argument: Any) -> Iterator[Any]:

@@ -15,7 +15,14 @@ from functools import cache
 from time import perf_counter
 from typing import Annotated, Any, Final, get_origin, get_type_hints
 
-from rockframe.compiled.language import Integers, ReadOnlyMatrix, Vector, tuple_from
+from rockframe.compiled.language import (
+    AFTER_CALL,
+    PYTHON_SECONDS,
+    Integers,
+    ReadOnlyMatrix,
+    Vector,
+    tuple_from,
+)
 from rockframe.compiled.sources import BoundSource
 
 _WORD: Final = ctypes.c_int64
@@ -54,7 +61,10 @@ class PythonCallback:
                 _raised.first = _raised.first or raised
                 return 0
             finally:
-                source.fallback_seconds += perf_counter() - started
+                seconds = perf_counter() - started
+                source.fallback_seconds += seconds
+                PYTHON_SECONDS[0] += seconds
+                AFTER_CALL.get()()
 
         self._c_function = c_signature(source)(callback)
         self.address = ctypes.cast(self._c_function, ctypes.c_void_p).value or 0

@@ -21,7 +21,14 @@ import numpy as np
 
 from rockframe.compiled.bound import BoundFunction
 from rockframe.compiled.callbacks import python_callback, run_and_raise
-from rockframe.compiled.language import PURPOSE, PYTHON_SECONDS, REMAINING_SECONDS, Vector, inlined
+from rockframe.compiled.language import (
+    AFTER_CALL,
+    PURPOSE,
+    PYTHON_SECONDS,
+    REMAINING_SECONDS,
+    Vector,
+    inlined,
+)
 from rockframe.compiled.sources import BoundSource, CompilationUnit
 
 if TYPE_CHECKING:
@@ -134,7 +141,7 @@ def _warn_not_compiled(function: Callable[..., Any], problem: Exception) -> None
 
 
 def python_seconds() -> float:
-    """Return a clock that runs only while entries run as plain Python [s]."""
+    """Return a clock that runs only while entries or what they call back run as Python [s]."""
     return PYTHON_SECONDS[0] if COMPILED else perf_counter()
 
 
@@ -374,6 +381,16 @@ def compiling_for(words: str) -> Generator[None]:
         yield
     finally:
         PURPOSE.reset(before)
+
+
+@contextmanager
+def after_each_call(action: Callable[[], None]) -> Generator[None]:
+    """Set what is called after each bound function that is called in, or as, plain Python."""
+    before = AFTER_CALL.set(action)
+    try:
+        yield
+    finally:
+        AFTER_CALL.reset(before)
 
 
 @contextmanager

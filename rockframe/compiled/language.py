@@ -33,9 +33,11 @@ KERNELS: Final[dict[Callable[..., Any], bool]] = {}
 PURPOSE: Final = ContextVar("purpose", default="this")
 """What needs the machine code that is compiled, for messages."""
 PYTHON_SECONDS: Final[list[float]] = [0.0]
-"""Processor time that entries have spent in plain Python while they were compiled [s]."""
+"""Time that entries, and functions that they call back, have spent in plain Python [s]."""
 REMAINING_SECONDS: Final = ContextVar("remaining_seconds", default=0.0)
 """Remaining time in plain Python that the caller expects; 0 where it is unknown [s]."""
+AFTER_CALL: Final = ContextVar[Callable[[], None]]("after_call", default=lambda: None)
+"""What is called after each bound function that plain Python calls, or that is plain Python."""
 
 
 def kernel(function: Function) -> Function:

@@ -7,7 +7,7 @@ import math
 from collections.abc import Generator, Mapping
 from contextlib import contextmanager
 from dataclasses import dataclass, replace
-from time import thread_time
+from time import perf_counter, thread_time
 from typing import Final
 
 import numpy as np
@@ -17,6 +17,7 @@ from rockframe.compiled import (
     Integers,
     Matrix,
     Vector,
+    after_each_call,
     expecting_remaining,
     python_seconds,
     warn_of_slow_run,
@@ -40,7 +41,6 @@ from rockframe.solve.driver import advance
 from rockframe.solve.equations import (
     BoundEquations,
     equations_of,
-    is_fully_compiled,
     runs_as_python,
     steps_are_compiled,
 )
@@ -183,8 +183,8 @@ MAX_STEPS_KEPT = 2_000_000
 """Most rows of the table of steps, some hundred megabytes: then it grows no more."""
 STEPS_BETWEEN_INTERRUPTS = 2_000_000
 """Steps of machine code, a second or less, between checks for a keyboard interrupt."""
-STEPS_CALLING_BACK = 5000
-"""Steps of machine code between checks whether functions that it calls back pay to be compiled."""
+SECONDS_CALLING_BACK = 0.25
+"""Time between checks whether functions in plain Python have been, or pay to be, compiled [s]."""
 STEPS_IN_PYTHON = 100
 """Steps in plain Python between checks whether machine code is ready."""
 ESTIMATED_AFTER = 0.1
@@ -199,9 +199,23 @@ STILL_INTERVAL = 0.01
 
 def _steps_to_pause(equations: BoundEquations) -> int:
     """Return how many steps are made before the run pauses."""
-    if is_fully_compiled(equations):
-        return STEPS_BETWEEN_INTERRUPTS
-    return STEPS_CALLING_BACK if steps_are_compiled(equations) else STEPS_IN_PYTHON
+    return STEPS_BETWEEN_INTERRUPTS if steps_are_compiled(equations) else STEPS_IN_PYTHON
+
+
+@contextmanager
+def pausing_in_python(counters: Integers) -> Generator[None]:
+    """Let the run in this block pause after some time if it calls functions in plain Python.
+
+    One event of many bodies may take as long there as thousands of steps.
+    """
+    until = perf_counter() + SECONDS_CALLING_BACK
+
+    def pause_when_due() -> None:
+        if perf_counter() >= until:
+            counters[at.PAUSE_AT] = 0
+
+    with after_each_call(pause_when_due):
+        yield
 
 
 class PythonTime:
@@ -221,15 +235,14 @@ class PythonTime:
         with expecting_remaining(self._rest):
             yield
         self._rest = 0.0
+        self.seconds += python_seconds() - started_as_python
         if was_compiled:  # and nothing was compiled in this time
             if equations.march.fallback_for is not None:
                 replaced = equations.march.fallback_for.source
                 replaced.fallback_seconds += thread_time() - started
-        elif not steps_are_compiled(equations):
-            self.seconds += python_seconds() - started_as_python
-            if self.seconds > ESTIMATED_AFTER:
-                parts = self._duration / max(float(clock[at.TIME]), self._interval)
-                self._rest = self.seconds * (parts - 1.0) * self._total_over_rest
+        elif not steps_are_compiled(equations) and self.seconds > ESTIMATED_AFTER:
+            parts = self._duration / max(float(clock[at.TIME]), self._interval)
+            self._rest = self.seconds * (parts - 1.0) * self._total_over_rest
 
 
 class Tables:
@@ -333,7 +346,7 @@ def integrate(
     while True:
         made = counters[at.STEPS] + counters[at.REJECTED]
         counters[at.PAUSE_AT] = min(made + _steps_to_pause(equations), counters[at.MAX_STEPS])
-        with python_time.measured(equations, clock):
+        with python_time.measured(equations, clock), pausing_in_python(counters):
             result = advance(
                 equations, run.tolerance, memory, pieces, progress,
                 Output(rows.state, rows.mode, rows.work, tables.steps), tables.events, workspace,

@@ -129,6 +129,23 @@ def test_compiled_and_uncompiled_runs_are_identical(name, monkeypatch):
         assert plain.impact_count > (3 if "small" in name else 2)
 
 
+def test_run_that_pauses_after_slow_functions_in_python_is_identical(monkeypatch):
+    """A run returns from functions that are not compiled, to see whether they are by now."""
+    stack, base, accuracy = next(iter(STACKS.values()))
+    system = rf.System(stack, base)
+    uninterrupted = system.simulate(SHORT, accuracy=accuracy, outputs=["energy"])
+    monkeypatch.setattr(integrate, "SECONDS_CALLING_BACK", 0.0)
+    with uncompiled_loop(monkeypatch):
+        advance, results = integrate.advance, []
+        monkeypatch.setattr(
+            integrate, "advance", lambda *inputs: results.append(advance(*inputs)) or results[-1]
+        )
+        paused = system.simulate(SHORT, accuracy=accuracy, outputs=["energy"])
+    assert results.count(at.PAUSED) > paused.sizes["event"]
+    for variable, values in uninterrupted.variables.items():
+        np.testing.assert_array_equal(values, paused.variables[variable], err_msg=variable)
+
+
 def test_time_of_uncompiled_steps_is_counted(monkeypatch):
     """After some seconds the equations are compiled into the steps."""
     system = rf.System(BLOCK)

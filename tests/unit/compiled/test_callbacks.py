@@ -11,6 +11,7 @@ from rockframe.compiled import (
     Integers,
     ReadOnlyMatrix,
     Vector,
+    after_each_call,
     background_entry,
     bind,
     entry,
@@ -104,6 +105,20 @@ def test_python_machine_code_and_callbacks_agree():
     source.code, source.address, source.fallback_seconds = None, 0, 0.0
     assert result_of(arguments(2)) == EXPECTED
     assert source.address != 0
+
+
+def test_caller_is_told_of_each_call_of_a_function_in_python():
+    inputs, calls = arguments(2), []
+    source = inputs[0].function.source
+    with after_each_call(lambda: calls.append(source.address)):
+        assert result_of(inputs) == EXPECTED  # called back by machine code
+        assert calls == [0, 0]
+        through._plain(*arguments(2))
+        assert calls == [0, 0, 0, 0]
+        source.fallback_seconds = 1e9
+        result_of(arguments(2))  # compiled by now
+        assert len(calls) == 4
+    assert result_of(arguments(2)) == EXPECTED
 
 
 class Nested(NamedTuple):
