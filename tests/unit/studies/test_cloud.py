@@ -144,6 +144,9 @@ def test_regression_coefficients_are_drawn_from_t_and_chi2():
     ):
         assert stats.kstest((sample - middle) / size, stats.t(13).cdf).pvalue > 1e-3
     assert stats.kstest(13 * (line.dispersion / spread) ** 2, stats.chi2(13).cdf).pvalue > 1e-3
+    correlation = line.covariance[0, 1] / error.prod()
+    assert np.corrcoef(intercept, slope)[0, 1] == pytest.approx(correlation, abs=0.02)
+    assert abs(correlation) > 0.1
 
 
 def test_cloud_bounds_have_nominal_coverage():
