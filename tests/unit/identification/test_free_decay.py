@@ -190,6 +190,9 @@ def test_times_of_peaks_count_as_data_from_any_start():
     assert found.release_time.item() == pytest.approx(100.0, abs=1e-3)
     differences = found.measured_peak_time - found.fitted_peak_time
     np.testing.assert_array_equal(found.peak_time_residual, differences)
+    for kind, residual in (("time", differences), ("rotation", found.peak_rotation_residual)):
+        size = np.sqrt((residual**2).mean()).item()
+        assert found[f"{kind}_rms_residual"].item() == pytest.approx(size, rel=1e-12)
     given = rf.fit_free_decay(
         START,
         peaks=((times + 100.0, "s"), (rotation, "rad")),

@@ -333,6 +333,7 @@ def test_verdict_describes_quality_of_bounds():
         "With 12 motions bounds of nominal 90 % are too narrow: of 10, those of 95 % held the "
         "median in 89 %, the dispersion in 80 % of simulated samples."
     )
+    assert "of 20, those of 95 % held the median in 92 %" in statement(Bands.SANDWICH, 39)
     assert statement(Bands.SANDWICH, 12, measures=2) == (
         "With 12 motions bounds of nominal 95 % are too narrow."
     )
