@@ -107,6 +107,10 @@ def test_circolare_with_motions_matches_simulated_displacements():
     pulse = rf.GroundMotion.type_c_pulse("0.2 m/s", "0.5 s", order=3)
     gentle = rf.codes.circolare_2019(WALL, pulse)
     assert gentle.passed["dynamic, SLV"]
+    wide = rf.codes.circolare_2019(WALL, rf.GroundMotion.type_a_pulse("0.4 m/s", "1 s"))
+    assert wide.value("d_SLV") < wide.value("mean of d") < wide.value("d_0")
+    assert wide.passed["dynamic, no run beyond d_0"]
+    assert not wide.passed["dynamic, SLV"]
     displacement = rf.response_spectrum(
         pulse, (np.geomspace(0.2, gentle.value("T_SLV"), 80), "s"), 0.08
     ).spectral_displacement

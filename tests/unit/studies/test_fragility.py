@@ -327,6 +327,8 @@ def test_fragility_accepts_two_measures_and_a_custom_measure(runs):
         rf.fragility(runs, "SA")
     with pytest.raises(ComponentError, match="must be one of"):
         rf.fragility(runs, "magnitude")
+    with pytest.raises(ComponentError, match="bands by profile are those of one intensity"):
+        rf.fragility(runs, ("PGA", "PGV"), bands="profile")
 
 
 def test_runs_without_a_finite_intensity_are_in_no_stripe(runs):
