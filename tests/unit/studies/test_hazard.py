@@ -406,3 +406,5 @@ def test_rate_of_another_state_is_said_where_there_is_none_of_overturning():
     assert rates.verdict.startswith("There is no fragility against overturning, and so no rate. ")
     uplift = rates.annual_rate[0].item()
     assert f"Annual rate of uplift: {uplift:.3g}, a return period" in rates.verdict
+    none = rf.annual_rate(found.isel(limit_state=[1, 2]), TABLE).verdict
+    assert none == "There is no fragility against overturning, and so no rate."
