@@ -287,6 +287,18 @@ def test_signed_peaks_of_eccentric_block_give_restitution(first, rotation):
         rf.fit_free_decay(rf.System(block), peaks=(np.abs(peaks), "rad"))
 
 
+@pytest.mark.parametrize(
+    "ties", [(), (rf.Tendon(stiffness="1 kN/m", preload="0.1 kN", at="0 m"),)], ids=len
+)
+def test_the_restitution_of_a_frame_is_found_without_its_ground(ties):
+    frame = rf.RockingFrame(BLOCK, columns=3, beam_mass="400 kg")
+    truth = rf.System(frame, rf.RigidGround(restitution=0.85), *ties)
+    start = rf.InitialState(rotation="-0.1 rad")
+    run = truth.simulate(duration="2 s", initial=start, output_step="0.02 s")
+    fit = rf.fit_free_decay(rf.System(frame, *ties), run.rotation)
+    assert fit.fitted_value.item() == pytest.approx(0.85, rel=1e-6)
+
+
 @pytest.mark.parametrize("data", [{"peaks": ([9.0, 4.0, 2.1], "deg")}, {"measured": "history"}])
 def test_a_block_before_a_rigid_wall_is_refused(data, run):
     """All peaks are on one side, but the model gives peaks of both sides."""
