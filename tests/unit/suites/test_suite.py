@@ -102,6 +102,8 @@ def test_selecting():
         SUITE.select(magnitude=(8, 9))
     with pytest.raises(ComponentError, match="a range of two"):
         SUITE.select(magnitude=(8, 9, 10))
+    with pytest.raises(ComponentError, match=r"event needs a range of words, .* got \(1, 2\)"):
+        SUITE.select(event=(1, 2))
 
 
 def test_sorting_and_picking():
@@ -114,6 +116,10 @@ def test_sorting_and_picking():
         7.36,
         7.36,
     ]
+    by_number = SUITE.sort("record_sequence_number")  # not as texts
+    assert [*dict.fromkeys(motion.metadata["record"] for motion in by_number.values())] == [
+        "RSN6", "RSN14", "RSN78",
+    ]  # fmt: skip
     falling = SUITE.sort("shear_wave_velocity_30", descending=True)
     assert [motion.metadata["record"] for motion in falling.values()][::2] == [
         "RSN14",
