@@ -69,6 +69,9 @@ def test_the_table():
     assert table["peak_ground_acceleration [m s^-2]"].tolist() == peaks
     assert table["source_file"].tolist()[0] == "RSN6_MADE_S6000.AT2"
     assert "magnitude" not in PULSE_SUITE.table
+    mixed = rf.MotionSuite([*SUITE.only(labels(6)).values(), PULSES[0]]).table
+    assert mixed["event"].tolist()[-1] == ""
+    assert np.isnan(mixed["magnitude"].tolist()[-1])
 
 
 def test_selecting():
