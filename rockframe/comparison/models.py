@@ -92,7 +92,7 @@ def model_ladder(system: System) -> dict[str, System]:
     rows = _MODELS[:1] if system.parts.own else _MODELS
     slides = system.setting.slides and not system.parts.own
     block = system.parts.block
-    squat = block is not None and "stack" not in present and bool(squat_body_warnings(block.si, ""))
+    squat = block is not None and bool(squat_body_warnings(block.si, ""))
     # a wall prevents the sliding of the model without it
     prevents_sliding = slides or "wall" in present
     all_parts, sliding = components, Sliding.CHECKED if prevents_sliding else system.sliding

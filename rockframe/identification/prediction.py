@@ -79,8 +79,7 @@ class TrialSystems:
     """Systems that differ from the tested one in the parameters that are to be found."""
 
     def __init__(self, system: System, names: Sequence[str]) -> None:
-        alone = system.parts.signature == frozenset({"block"})
-        self._parts = (system.parts.with_ground() if alone else system.parts).structural()
+        self._parts = system.parts.with_ground().structural()
         self._options: dict[str, Any] = system.options.to_dict()
         self.radius = system.parts.block_si.radius
         self.gravity = system.options.gravity

@@ -135,7 +135,19 @@ def _criterion(name: str, argument: Any) -> Test:
             msg = f"{_OWNER}: {name} needs a range of two values, got {short_repr(argument)}"
             raise ComponentError(msg)
         low, high = (None if bound is None else _read_value(name, bound) for bound in bounds)
-        return lambda value: (low is None or low <= value) and (high is None or value <= high)
+
+        def is_within(value: Any) -> bool:
+            try:
+                return (low is None or low <= value) and (high is None or value <= high)
+            except TypeError as problem:
+                kind = "words" if isinstance(value, str) else "numbers"
+                msg = (
+                    f"{_OWNER}: {name} needs a range of {kind}, as of {short_repr(value)}, got "
+                    f"{short_repr(argument)}"
+                )
+                raise ComponentError(msg) from problem
+
+        return is_within
     if isinstance(argument, Collection) and not isinstance(argument, str):
         accepted = [_read_value(name, value) for value in cast("Collection[Any]", argument)]
         return lambda value: _comparison_key(value) in map(_comparison_key, accepted)

@@ -258,12 +258,8 @@ def read_number(value: object, measure: Measure, *, owner: str, name: str) -> fl
 
 def _parse_si(value: object, measure: Measure) -> float | None:
     """Read a text in the SI unit, which needs no conversion; None for any other."""
-    if not isinstance(value, str) or not value.endswith(measure.unit):
-        return None
-    parts = number_and_unit(value)
-    if parts is None or parts[1] != measure.unit:
-        return None
-    return float(parts[0])
+    parts = number_and_unit(value) if isinstance(value, str) else None
+    return float(parts[0]) if parts is not None and parts[1] == measure.unit else None
 
 
 def _parse(value: object, measure: Measure, *, owner: str, name: str) -> Quantity:

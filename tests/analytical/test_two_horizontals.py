@@ -280,6 +280,12 @@ def test_average_spectral_acceleration_is_geometric_mean():
     expected = np.prod(spectrum.values) ** (1.0 / 15.0)
     assert float(found.average_spectral_acceleration) == pytest.approx(expected, rel=1e-12)
     assert found.attrs["damping_ratio"] == 0.03
+    pairs = {"a": rf.HorizontalPair(noise(1), noise(2)), "b": rf.HorizontalPair(noise(3), motion)}
+    several = rf.average_spectral_acceleration(pairs, (periods, "s"))
+    for name, pair in pairs.items():
+        alone = rf.average_spectral_acceleration(pair, (periods, "s"))
+        for average, value in alone.items():
+            assert several[average].sel(motion=name).item() == value.item(), (name, average)
 
 
 @pytest.mark.skipif(not COMPILED, reason="this run does without compilation")

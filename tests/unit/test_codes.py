@@ -103,12 +103,20 @@ def test_circolare_with_motions_matches_simulated_displacements():
     check = rf.codes.circolare_2019(WALL, {**diluted, "0.6 m/s": PULSES["0.6 m/s"]})
     assert check.value("mean of d") < check.value("d_SLV")
     assert check.passed["dynamic, SLV"] is False
-    gentle = rf.codes.circolare_2019(WALL, PULSES["0.3 m/s"].scaled(0.5))
+    # one of them has its greatest spectral displacement at a short period
+    pulses = {"a": rf.GroundMotion.type_c_pulse("0.2 m/s", "0.5 s", order=3)}
+    pulses["b"] = PULSES["0.3 m/s"].scaled(0.1)
+    gentle = rf.codes.circolare_2019(WALL, pulses)
     assert gentle.passed["dynamic, SLV"]
+    wide = rf.codes.circolare_2019(WALL, rf.GroundMotion.type_a_pulse("0.4 m/s", "1 s"))
+    assert wide.value("d_SLV") < wide.value("mean of d") < wide.value("d_0")
+    assert wide.passed["dynamic, no run beyond d_0"]
+    assert not wide.passed["dynamic, SLV"]
     displacement = rf.response_spectrum(
-        PULSES["0.3 m/s"].scaled(0.5), (np.geomspace(0.2, gentle.value("T_SLV"), 80), "s"), 0.08
+        pulses, (np.geomspace(0.2, gentle.value("T_SLV"), 80), "s"), 0.08
     ).spectral_displacement
-    assert gentle.value("d_demand") == pytest.approx(float(displacement.max()), rel=1e-9)
+    demand = float(displacement.mean("motion").max())
+    assert gentle.value("d_demand") == pytest.approx(demand, rel=1e-9)
 
 
 def test_displacement_to_the_stronger_side_is_not_capped():
@@ -143,6 +151,9 @@ def test_displacement_to_the_stronger_side_is_not_capped():
 def test_scenes_that_cannot_be_checked_are_refused(scene, words):
     with pytest.raises(ComponentError, match=words):
         rf.codes.circolare_2019(*scene)
+    loaded = rf.System(CABINET, rf.Load(at=("0 m", "1.8 m"), moving_mass="20 kg"))
+    with pytest.raises(ComponentError, match="block on level rigid ground, got Block, Load"):
+        rf.codes.asce_7_22(loaded, spectral_acceleration=1.0)
 
 
 def test_invalid_check_arguments_are_refused():

@@ -190,6 +190,9 @@ def test_times_of_peaks_count_as_data_from_any_start():
     assert found.release_time.item() == pytest.approx(100.0, abs=1e-3)
     differences = found.measured_peak_time - found.fitted_peak_time
     np.testing.assert_array_equal(found.peak_time_residual, differences)
+    for kind, residual in (("time", differences), ("rotation", found.peak_rotation_residual)):
+        size = np.sqrt((residual**2).mean()).item()
+        assert found[f"{kind}_rms_residual"].item() == pytest.approx(size, rel=1e-12)
     given = rf.fit_free_decay(
         START,
         peaks=((times + 100.0, "s"), (rotation, "rad")),
@@ -282,6 +285,18 @@ def test_signed_peaks_of_eccentric_block_give_restitution(first, rotation):
     assert fit.trial_count <= 4
     with pytest.raises(ComponentError, match="without their signs do not tell the sides"):
         rf.fit_free_decay(rf.System(block), peaks=(np.abs(peaks), "rad"))
+
+
+@pytest.mark.parametrize(
+    "ties", [(), (rf.Tendon(stiffness="1 kN/m", preload="0.1 kN", at="0 m"),)], ids=len
+)
+def test_the_restitution_of_a_frame_is_found_without_its_ground(ties):
+    frame = rf.RockingFrame(BLOCK, columns=3, beam_mass="400 kg")
+    truth = rf.System(frame, rf.RigidGround(restitution=0.85), *ties)
+    start = rf.InitialState(rotation="-0.1 rad")
+    run = truth.simulate(duration="2 s", initial=start, output_step="0.02 s")
+    fit = rf.fit_free_decay(rf.System(frame, *ties), run.rotation)
+    assert fit.fitted_value.item() == pytest.approx(0.85, rel=1e-6)
 
 
 @pytest.mark.parametrize("data", [{"peaks": ([9.0, 4.0, 2.1], "deg")}, {"measured": "history"}])

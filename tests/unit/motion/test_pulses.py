@@ -72,6 +72,7 @@ def test_zero_amplitude_is_a_still_ground():
         ({"frequency": 1.0}, "frequency needs a cyclic frequency"),
         ({"frequency": "6.28 rad/s"}, "divided by 2 pi"),
         ({"frequency": "1 s"}, "frequency needs a cyclic frequency"),
+        ({"frequency": "0 s"}, "frequency needs a cyclic frequency"),
         ({"cycles": "1 s"}, "cycles needs a pure ratio"),
     ],
 )

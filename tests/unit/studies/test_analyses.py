@@ -185,6 +185,15 @@ def test_all_faulty_spreads_are_reported_at_once():
                     "height": ("gamma", "1 m", "2 m"), "restraint": ("uniform", "centre", "x")},
         )  # fmt: skip
     assert len(problem.value.faults) == 4
+    with pytest.raises(StudyError) as problem:
+        rf.probability_of_overturning(
+            SYSTEM, pulse,
+            spread={"mass": ("normal", "400 kg", "0 kg"), "height": ("uniform", "2 m", "1.9 m"),
+                    "scale": ("lognormal", -1.0, 0.2)},
+        )  # fmt: skip
+    needs = [fault.partition(" needs a ")[2].partition(",")[0] for fault in problem.value.faults]
+    assert needs == ["standard deviation above zero", "greatest above the least",
+                     "median above zero"]  # fmt: skip
     with pytest.raises(ComponentError, match="distributions by names"):
         rf.probability_of_overturning(SYSTEM, pulse, spread={})
 

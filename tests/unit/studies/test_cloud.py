@@ -69,6 +69,7 @@ def test_cloud_without_overturning_equals_lognormal_least_squares(base):
     assert found.determination.item() == pytest.approx(line.rvalue**2, rel=1e-12)
     spread = np.std(response - line.intercept - line.slope * logs) * math.sqrt(COUNT / (COUNT - 2))
     assert found.residual_dispersion.item() == pytest.approx(spread, rel=1e-12)
+    rng = np.random.default_rng(0)
     for level, one in zip((0.1, 0.4), (0, 1), strict=True):
         state = found.isel(limit_state=one)
         median = math.exp((math.log(level) - line.intercept) / line.slope)
@@ -76,6 +77,15 @@ def test_cloud_without_overturning_equals_lognormal_least_squares(base):
         assert state.dispersion.item() == pytest.approx(spread / line.slope, rel=1e-9)
         curve = stats.norm.cdf(np.log(found.strength / median) * line.slope / spread)
         np.testing.assert_allclose(state.exceedance_probability, curve, rtol=1e-9)
+        # bounds of 95 %, by the distributions of the coefficients
+        chi = np.sqrt(rng.chisquare(COUNT - 2, (200_000, 1)) / (COUNT - 2))
+        at = np.log(found.strength.values[::50])
+        error = np.sqrt(1.0 / COUNT + (at - logs.mean()) ** 2 / (COUNT * logs.var()))
+        drawn = chi * stats.norm.ppf(curve[::50]) + error * rng.standard_normal((200_000, at.size))
+        for end, share in (("lower", 0.025), ("upper", 0.975)):
+            bound = stats.norm.ppf(state[f"exceedance_probability_{end}_bound"][::50])
+            far = abs(bound - np.quantile(drawn, share, axis=0))
+            assert (far < 0.1 * drawn.std(axis=0)).all(), end
     assert found.fragility_status.values.tolist()[-1] == FragilityStatus.NONE_EXCEEDED
     assert found.median_intensity.attrs["units"] == "m"
 
@@ -144,6 +154,9 @@ def test_regression_coefficients_are_drawn_from_t_and_chi2():
     ):
         assert stats.kstest((sample - middle) / size, stats.t(13).cdf).pvalue > 1e-3
     assert stats.kstest(13 * (line.dispersion / spread) ** 2, stats.chi2(13).cdf).pvalue > 1e-3
+    correlation = line.covariance[0, 1] / error.prod()
+    assert np.corrcoef(intercept, slope)[0, 1] == pytest.approx(correlation, abs=0.02)
+    assert abs(correlation) > 0.1
 
 
 def test_cloud_bounds_have_nominal_coverage():

@@ -242,6 +242,12 @@ def test_fragility_can_be_fitted_to_capacities(analysis):
     assert found.sel(limit_state="uplift").median_intensity.item() == pytest.approx(
         9.80665 / 4.0, rel=1e-3
     )
+    for trials in ("runs", "capacities"):
+        every, chosen = (
+            rf.fragility(analysis, trials=trials, **limits)[["median_intensity", "dispersion"]]
+            for limits in ({}, {"limits": ["uplift"]})
+        )
+        xr.testing.assert_equal(chosen, every.sel(limit_state=["uplift", "overturning"]))
     with pytest.raises(ComponentError, match=r"has no limit state .* which has uplift, "):
         rf.fragility(analysis, limits=[0.7])
 

@@ -166,3 +166,8 @@ def test_first_order_index_is_the_adjusted_correlation_ratio(count):
     of_all = ((verdict - verdict.mean()) ** 2).sum() / (count - 1)
     found = rank_parameters({"a": values}, verdict)["a"]
     assert found.first_order == pytest.approx(1.0 - within / of_all, rel=1e-9)
+    # each word is a group
+    words = rng.choice(["x", "y", "z"], size=count)
+    of_words = rank_parameters({"a": words}, (words == "y").astype(float))["a"]
+    assert of_words.first_order == pytest.approx(1.0, rel=1e-12)
+    assert np.isnan(of_words.distribution_distance)

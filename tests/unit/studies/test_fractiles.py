@@ -47,6 +47,7 @@ def test_fractiles_of_three_motions_match_hand_calculation():
         [[0.5, middle, 1.5], [0.5, 1.5, 2.0], [0.75, np.inf, np.inf]], atol=1e-12,
     )  # fmt: skip
     assert curves.unreached_count.values.tolist() == [0, 1, 1]
+    assert curves.attrs["response"] == "peak_relative_rotation"
     assert curves.attrs["verdict"] == (
         "Of 3 motions 2 overturned at some scale from 0.5 to 2.5, half of them at 2.5."
     )

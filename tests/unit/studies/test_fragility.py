@@ -327,6 +327,8 @@ def test_fragility_accepts_two_measures_and_a_custom_measure(runs):
         rf.fragility(runs, "SA")
     with pytest.raises(ComponentError, match="must be one of"):
         rf.fragility(runs, "magnitude")
+    with pytest.raises(ComponentError, match="bands by profile are those of one intensity"):
+        rf.fragility(runs, ("PGA", "PGV"), bands="profile")
 
 
 def test_runs_without_a_finite_intensity_are_in_no_stripe(runs):
@@ -337,6 +339,8 @@ def test_runs_without_a_finite_intensity_are_in_no_stripe(runs):
     counts = found.trial_count.item(), found.left_out_count.item()
     assert counts == (found.stripe_trials.sum().item(), 2)
     assert sum(counts) == runs.status.size
+    both = rf.fragility(runs, (own, "PGA"), limits=())
+    assert (both.trial_count.item(), both.left_out_count.item()) == counts
 
 
 def test_custom_measure_is_aligned_by_labels(runs):

@@ -102,15 +102,20 @@ def test_runs_under_one_motion_have_no_standard_errors(bands, dispersion):
     assert sentence.startswith("There are no bounds: 1 motion is too few, ")
 
 
-def test_sandwich_of_counts_treats_each_trial_as_a_cluster():
+def test_bands_of_counts_treat_each_trial_as_a_cluster():
     logs, over, count = np.log([0.5, 1.0, 2.0]), np.array([1.0, 2.0, 3.0]), np.full(3, 4.0)
-    found = fit(Trials.from_verdicts(logs[:, None], over, count), Bands.SANDWICH)
+    counted = Trials.from_verdicts(logs[:, None], over, count)
+    found = fit(counted, Bands.SANDWICH)
     each = [(one, 1.0) for one, k in zip(logs, over, strict=True) for _ in range(int(k))]
     each += [(one, 0.0) for one, k in zip(logs, count - over, strict=True) for _ in range(int(k))]
     alone, verdict = np.array(each).T
     best, covariance = sandwich_fit(alone, verdict, np.arange(len(alone)))
     assert found.coefficients == pytest.approx(best, rel=1e-5, abs=1e-6)
     assert found.covariance == pytest.approx(covariance, rel=1e-4, abs=1e-6)
+    apart = Trials.from_verdicts(alone[:, None], verdict, np.ones(12), np.arange(12))
+    one, other = (fit(trials, Bands.JACKKNIFE) for trials in (counted, apart))
+    assert one.clusters == other.clusters == 12.0
+    assert one.covariance == pytest.approx(other.covariance, rel=1e-7)
 
 
 def test_the_jackknife_leaves_out_each_motion_in_turn():
@@ -333,6 +338,7 @@ def test_verdict_describes_quality_of_bounds():
         "With 12 motions bounds of nominal 90 % are too narrow: of 10, those of 95 % held the "
         "median in 89 %, the dispersion in 80 % of simulated samples."
     )
+    assert "of 20, those of 95 % held the median in 92 %" in statement(Bands.SANDWICH, 39)
     assert statement(Bands.SANDWICH, 12, measures=2) == (
         "With 12 motions bounds of nominal 95 % are too narrow."
     )

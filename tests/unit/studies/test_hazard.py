@@ -69,15 +69,20 @@ def test_steep_hazard_and_wide_dispersion_match_quadrature(curve, exponent, spre
 
 
 @pytest.mark.parametrize("exponent", [0.06, 0.2, 0.7, 3.0])
-def test_rate_above_a_flat_hazard_curve_is_the_closed_form(curve, exponent):
-    median, spread, end = curve.median_intensity.item(), curve.dispersion.item(), 20.0
-    table = {"intensity": ([0.1, end], "m/s^2"), "rate": [1e-3, 1e-3 * (end / 0.1) ** -exponent]}
+def test_rates_beyond_a_hazard_curve_are_the_closed_forms(curve, exponent):
+    """Also above a curve that is almost flat."""
+    median, spread = curve.median_intensity.item(), curve.dispersion.item()
+    ends = np.array([6.0, 20.0])
+    rates = 1e-3 * (ends / ends[0]) ** -exponent
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", ModelWarning)
-        found = rf.annual_rate(curve, table).unreached_rate_above.item()
-    eta, shift = math.log(end / median) / spread, exponent * spread
-    share = (end / median) ** exponent * math.exp(0.5 * shift**2) * ndtr(-eta - shift) + ndtr(eta)
-    assert found == pytest.approx(share * table["rate"][1], rel=1e-9)
+        found = rf.annual_rate(curve, {"intensity": (ends, "m/s^2"), "rate": rates})
+    eta, shift = np.log(ends / median) / spread, exponent * spread
+    within = (ends / median) ** exponent * math.exp(0.5 * shift**2)
+    below = within * ndtr(eta + shift) - ndtr(eta)
+    above = within * ndtr(-eta - shift) + ndtr(eta)
+    assert found.unreached_rate_below.item() == pytest.approx((below * rates)[0], rel=1e-9)
+    assert found.unreached_rate_above.item() == pytest.approx((above * rates)[1], rel=1e-9)
 
 
 def test_median_beyond_the_table_gives_zero_rate(curve):
@@ -401,3 +406,5 @@ def test_rate_of_another_state_is_said_where_there_is_none_of_overturning():
     assert rates.verdict.startswith("There is no fragility against overturning, and so no rate. ")
     uplift = rates.annual_rate[0].item()
     assert f"Annual rate of uplift: {uplift:.3g}, a return period" in rates.verdict
+    none = rf.annual_rate(found.isel(limit_state=[1, 2]), TABLE).verdict
+    assert none == "There is no fragility against overturning, and so no rate."

@@ -60,6 +60,10 @@ def test_levels_and_samples_are_consistent(found):
     assert (np.diff(found.demand_threshold) > 0.0).all()
     assert np.isinf(found.demand_threshold.values[-1])
     assert np.isnan(found.acceptance_rate.values[0])
+    drawn = found.isel(case=found.sample_level.values == 1)  # by the given distributions
+    assert (drawn.motion == "slow").mean().item() == pytest.approx(0.5, abs=0.1)
+    correlation = np.corrcoef(drawn.width, np.log(drawn.scale))[0, 1]
+    assert correlation == pytest.approx(0.3, abs=0.1)
     assert ((found.acceptance_rate[1:] > 0.2) & (found.acceptance_rate[1:] < 0.8)).all()
     falls = np.isinf(found.demand)
     np.testing.assert_array_equal(falls, found.overturned)
@@ -261,6 +265,7 @@ def test_interrupted_subset_simulation_warns_and_resumes(tmp_path, monkeypatch):
         assert part.verdict.endswith("; interrupted.")
         assert np.isnan(part.exceedance_probability)
         assert part.sizes["sampling_level"] == 2
+        assert part.exceedance_probability_lower_bound == 0.0
         bound = part.exceedance_probability_upper_bound.item()
         assert complete.exceedance_probability.item() < bound < 1.0
         with pytest.raises(StudyError, match=r"interrupted at level 1$"):

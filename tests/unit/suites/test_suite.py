@@ -69,6 +69,9 @@ def test_the_table():
     assert table["peak_ground_acceleration [m s^-2]"].tolist() == peaks
     assert table["source_file"].tolist()[0] == "RSN6_MADE_S6000.AT2"
     assert "magnitude" not in PULSE_SUITE.table
+    mixed = rf.MotionSuite([*SUITE.only(labels(6)).values(), PULSES[0]]).table
+    assert mixed["event"].tolist()[-1] == ""
+    assert np.isnan(mixed["magnitude"].tolist()[-1])
 
 
 def test_selecting():
@@ -102,6 +105,8 @@ def test_selecting():
         SUITE.select(magnitude=(8, 9))
     with pytest.raises(ComponentError, match="a range of two"):
         SUITE.select(magnitude=(8, 9, 10))
+    with pytest.raises(ComponentError, match=r"event needs a range of words, .* got \(1, 2\)"):
+        SUITE.select(event=(1, 2))
 
 
 def test_sorting_and_picking():
@@ -114,6 +119,10 @@ def test_sorting_and_picking():
         7.36,
         7.36,
     ]
+    by_number = SUITE.sort("record_sequence_number")  # not as texts
+    assert [*dict.fromkeys(motion.metadata["record"] for motion in by_number.values())] == [
+        "RSN6", "RSN14", "RSN78",
+    ]  # fmt: skip
     falling = SUITE.sort("shear_wave_velocity_30", descending=True)
     assert [motion.metadata["record"] for motion in falling.values()][::2] == [
         "RSN14",

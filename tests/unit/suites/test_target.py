@@ -146,6 +146,11 @@ def test_the_median_of_motions():
             "increasing",
         ),
         (
+            lambda: rf.TargetSpectrum.from_table(([0.5, 1.0], "s"), ([1.0, 2.0, 3.0], "g_0")),
+            ComponentError,
+            "accelerations must be 2, as the periods",
+        ),
+        (
             lambda: rf.TargetSpectrum.from_table(([0.5, 1.0], "s"), ([1.0, 0.0], "g_0")),
             ComponentError,
             "above zero",
