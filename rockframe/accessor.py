@@ -18,6 +18,7 @@ if TYPE_CHECKING:
     from rockframe.units.display import UnitsLike
 
 _DIMENSIONS = "over"
+_CARE = "to be used with care"
 _SHOWN = (
     "peak_rotation",
     "peak_relative_rotation",
@@ -181,14 +182,28 @@ class RockframeAccessor:
         from rockframe.results.variables.variable import unit_suffix_of
 
         data = self._dataset
+        cautions = self._cautions()
+        care = {_CARE: cautions} if cautions else {}
         described = (name for name in ("model", "motion", "accuracy") if name in data.attrs)
-        rows = {name: str(data.attrs[name]) for name in described}
+        rows = care | {name: str(data.attrs[name]) for name in described}
         if len(data.sizes) > 0:
             rows[_DIMENSIONS] = ", ".join(f"{dim} ({n})" for dim, n in data.sizes.items())
         for name in _SHOWN:
             if name in data and data[name].ndim == 0 and not math.isnan(data[name].item()):
                 rows[name] = f"{data[name].item():.4g}{unit_suffix_of(data[name].attrs)}"
         return rows
+
+    def _cautions(self) -> str:
+        """Return why a result is to be used with care, or how many of its cases; "" for none."""
+        from rockframe.results.variables.studies import MESSAGE
+        from rockframe.simulation.run import NONE
+
+        messages = self._dataset.get(MESSAGE)
+        if messages is not None and messages.size > 1:
+            count = int((messages != NONE).sum())
+            return f"{count} of {messages.size} cases, see {MESSAGE}" if count else ""
+        text = self._dataset.attrs.get("cautions", NONE) if messages is None else messages.item()
+        return "" if text == NONE else str(text)
 
     def __repr__(self) -> str:
         return self.summary
