@@ -182,11 +182,8 @@ def _with_messages(row: xr.Dataset, dim: str) -> xr.Dataset:
     """Return the cautions of a run as messages, and extend messages of joined runs along `dim`."""
     if MESSAGE in row.coords:
         message = row[MESSAGE].variable
-        return (
-            row if dim in message.dims else row.assign_coords({MESSAGE: message.expand_dims(dim)})
-        )
-    if CAUTIONS not in row.attrs or "status" not in row:
-        return row
+        spread = message if dim in message.dims else message.expand_dims(dim)
+        return row.assign_coords({MESSAGE: spread})
     texts = np.full(row["status"].shape, row.attrs[CAUTIONS], dtype=object)
     return row.assign_coords({MESSAGE: (row["status"].dims, texts, SCHEMA[MESSAGE].attributes())})
 
