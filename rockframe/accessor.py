@@ -180,10 +180,11 @@ class RockframeAccessor:
     def _rows(self) -> dict[str, str]:
         """Return what the dataset is a result of, and its main numbers."""
         from rockframe.results.variables.variable import unit_suffix_of
+        from rockframe.studies.sweeps.labelling import cautions_of_result
 
         data = self._dataset
-        cautions = self._cautions()
-        care = {_CARE: cautions} if cautions else {}
+        cautions = cautions_of_result(data)
+        care = {_CARE: "; ".join(cautions)} if cautions else {}
         described = (name for name in ("model", "motion", "accuracy") if name in data.attrs)
         rows = care | {name: str(data.attrs[name]) for name in described}
         if len(data.sizes) > 0:
@@ -192,18 +193,6 @@ class RockframeAccessor:
             if name in data and data[name].ndim == 0 and not math.isnan(data[name].item()):
                 rows[name] = f"{data[name].item():.4g}{unit_suffix_of(data[name].attrs)}"
         return rows
-
-    def _cautions(self) -> str:
-        """Return why a result is to be used with care, or how many of its cases; "" for none."""
-        from rockframe.results.variables.studies import MESSAGE
-        from rockframe.simulation.run import NONE
-
-        messages = self._dataset.get(MESSAGE)
-        if messages is not None and messages.size > 1:
-            count = int((messages != NONE).sum())
-            return f"{count} of {messages.size} cases, see {MESSAGE}" if count else ""
-        text = self._dataset.attrs.get("cautions", NONE) if messages is None else messages.item()
-        return "" if text == NONE else str(text)
 
     def __repr__(self) -> str:
         return self.summary

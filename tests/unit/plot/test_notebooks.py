@@ -159,7 +159,7 @@ def test_summary_and_card_show_cautions():
         run = rocking.simulate(pulse)
     with pytest.warns(ModelWarning, match="a result to be careful with"):
         runs = rf.sweep(rocking, pulse, scale=[0.01, 1.0], progress=False)
-    for result, words in ((run, run.attrs["cautions"]), (runs, "1 of 2 cases, see message")):
+    for result, words in ((run, run.attrs["cautions"]), (runs, "1 of 2 cases: the run ends")):
         assert f"to be used with care: {words}" in result.rockframe.summary
         html = result.rockframe._repr_html_()
         assert "to be used with care" in html
