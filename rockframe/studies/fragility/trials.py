@@ -17,11 +17,11 @@ import xarray as xr
 
 from rockframe.arguments import checked_list
 from rockframe.errors import ComponentError, SchemaError, StudyError, first_along, short_repr
-from rockframe.results.variables.studies import CASE, CAUTIONS, MOTION
+from rockframe.results.variables.studies import CASE, MOTION
 from rockframe.signals.arrays import AnyArray, Array
 from rockframe.studies.intensities import column_of_runs
 from rockframe.studies.sweeps.axes import Changes, described_axes
-from rockframe.studies.sweeps.labelling import cautions_of_result
+from rockframe.studies.sweeps.labelling import cautions_attribute
 from rockframe.studies.sweeps.motions import SCALE
 
 Labelled = TypeVar("Labelled", xr.DataArray, xr.Dataset)
@@ -132,8 +132,7 @@ def attributes_of_system(runs: xr.Dataset, *, changed: bool | None = None) -> di
         changed = any(name in runs.coords for name in _structural_axes(runs, owner="the runs"))
     names = ("model",) if changed else ("model", "system_json")
     about = {name: runs.attrs[name] for name in names if name in runs.attrs}
-    cautions = cautions_of_result(runs)
-    return about | ({CAUTIONS: "; ".join(cautions)} if cautions else {})
+    return about | cautions_attribute(runs)
 
 
 def _check_pooled(

@@ -349,6 +349,12 @@ def cautions_of_result(dataset: xr.Dataset) -> list[str]:
     return [*found, *(f"{count} of {size} cases: {text}" for count, text in counts)]
 
 
+def cautions_attribute(runs: xr.Dataset) -> dict[str, str]:
+    """Return the attribute with the cautions of runs, for what is computed from them."""
+    cautions = cautions_of_result(runs)
+    return {CAUTIONS: "; ".join(cautions)} if cautions else {}
+
+
 def _alike(texts: Iterable[str]) -> Iterable[list[str]]:
     """Group texts that differ only in their numbers."""
     alike: dict[tuple[str, ...], list[str]] = {}
