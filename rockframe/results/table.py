@@ -126,6 +126,8 @@ def _split_places(run: xr.Dataset, kind: Contents) -> xr.Dataset:
     if kind is not Contents.SCALARS or "status" not in run.data_vars:
         return run
     alone: dict[str, xr.DataArray | str] = {}
+    if MESSAGE in run.coords and not run[MESSAGE].dims:  # no label of a single case
+        run = run.reset_coords(MESSAGE)
     if CAUTIONS in run.attrs and MESSAGE not in run.variables and not run["status"].dims:
         alone[MESSAGE] = run.attrs[CAUTIONS]
     for name, values in run.data_vars.items():

@@ -60,6 +60,9 @@ def test_cautions_of_runs_are_a_column(runs):
     assert rf.table([warned, runs[1]]).message.tolist() == ["not one to trust", "none"]
     assert "message" not in rf.table(warned, "events")
     assert rf.table(warned).index.names == ["motion"]
+    single = rf.concat([warned, runs[1]], "scale", SCALES[:2]).isel(scale=0)
+    assert rf.table(single).message.tolist() == ["not one to trust"]
+    assert "message" not in rf.table(single).index.names
 
 
 def test_points_and_restrainers_have_separate_columns():
