@@ -18,6 +18,7 @@ if TYPE_CHECKING:
     from rockframe.units.display import UnitsLike
 
 _DIMENSIONS = "over"
+_CARE = "to be used with care"
 _SHOWN = (
     "peak_rotation",
     "peak_relative_rotation",
@@ -179,10 +180,13 @@ class RockframeAccessor:
     def _rows(self) -> dict[str, str]:
         """Return what the dataset is a result of, and its main numbers."""
         from rockframe.results.variables.variable import unit_suffix_of
+        from rockframe.studies.sweeps.labelling import cautions_of_result
 
         data = self._dataset
+        cautions = cautions_of_result(data)
+        care = {_CARE: "; ".join(cautions)} if cautions else {}
         described = (name for name in ("model", "motion", "accuracy") if name in data.attrs)
-        rows = {name: str(data.attrs[name]) for name in described}
+        rows = care | {name: str(data.attrs[name]) for name in described}
         if len(data.sizes) > 0:
             rows[_DIMENSIONS] = ", ".join(f"{dim} ({n})" for dim, n in data.sizes.items())
         for name in _SHOWN:

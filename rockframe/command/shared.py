@@ -27,7 +27,15 @@ from rockframe.command.streams import (
 )
 from rockframe.command.typed_calls import parse_value
 from rockframe.constants import STANDARD_GRAVITY
-from rockframe.errors import ComponentError, FileError, RecordError, SolverError, short_repr
+from rockframe.errors import (
+    ComponentError,
+    FileError,
+    ModelWarning,
+    RecordError,
+    SolverError,
+    short_repr,
+    warn,
+)
 from rockframe.motion import GroundMotion
 from rockframe.reports.project import PROJECT_ATTRIBUTE
 from rockframe.results.table import head_of
@@ -36,6 +44,7 @@ from rockframe.simulation.system import System
 from rockframe.solve.accuracy import accuracy_of
 from rockframe.studies.intensities import PERIOD_ATTRIBUTE, measure_words
 from rockframe.studies.sweeps.chunk import SCREEN
+from rockframe.studies.sweeps.labelling import cautions_of_result
 from rockframe.suites import MotionSuite, read_suite
 from rockframe.units import Unit
 from rockframe.writing import Content, FileKind, checked_path, write_file
@@ -305,7 +314,14 @@ def is_result(path: str) -> bool:
 
 
 def read_result(path: str) -> xr.Dataset:
-    """Read a result."""
+    """Read a result, and repeat its cautions."""
+    dataset = _read_result(path)
+    for text in cautions_of_result(dataset):
+        warn(text, ModelWarning)
+    return dataset
+
+
+def _read_result(path: str) -> xr.Dataset:
     if path == STREAM:
         with TemporaryDirectory() as folder:
             copy = Path(folder) / "result.nc"

@@ -9,14 +9,17 @@ import numpy as np
 
 from rockframe.case_arrays import hypot, sqrt
 from rockframe.compiled import Vector
-from rockframe.dynamics.base import Base, positive_root
+from rockframe.dynamics.base import Base, equilibrium_height, positive_root
 from rockframe.dynamics.bed import Bed, Rigid
 from rockframe.dynamics.body import BaseLine, Body
 from rockframe.dynamics.law_trial import check_point_law, check_unloaded_level
 from rockframe.dynamics.pads import LEAVE, REENGAGE, ROUNDING, ElasticPads, Pads
-from rockframe.dynamics.point_law import Point, Viscoelastic
+from rockframe.dynamics.point_law import Point, Viscoelastic, point_at
 from rockframe.dynamics.protocol import CORNER_REACTIONS, Column
 from rockframe.dynamics.springs import GUARDS, Springs
+
+_SETTLED: Final = 1e-9
+"""Excess of the force of a law over the weight up to which a settlement is that of the law [1]."""
 
 
 @dataclass(frozen=True)
@@ -105,14 +108,15 @@ def pads_over(
     columns: Sequence[Column] = (),
     variable_scales: Sequence[float] = (),
 ) -> BaseNumbers:
-    """Return pads that follow another law; at rest they are like elastic pads.
+    """Return pads that follow another law.
 
     Parameters
     ----------
     law : PointLaw
         Law of each pad, per unit mass.
     elastic : BaseNumbers
-        Elastic pads with the initial stiffness and damping of the law, by :func:`pads_numbers`.
+        Elastic pads with the initial stiffness and damping of the law, by :func:`pads_numbers`. If
+        its force does not carry the weight at their settlement, the settlement is computed from it.
     columns : sequence of Column, optional
         Columns of the results that the law fills, of the left pad, then of the right one.
     variable_scales : sequence of float, optional
@@ -120,6 +124,7 @@ def pads_over(
     """
     check_point_law(law, elastic.settlement, columns, variable_scales)
     check_unloaded_level(law, elastic.settlement)
+    elastic = _settled(law, elastic)
     pads: Any = elastic.law
     guards = np.full(int(law.states() > 1), pads.noise)
     return replace(
@@ -128,6 +133,42 @@ def pads_over(
         columns=(*elastic.columns, *columns),
         end_tolerance=np.concatenate([elastic.end_tolerance, guards]),
         variable_scales=np.tile(np.asarray(variable_scales, dtype=np.float64), 2),
+    )
+
+
+def _settled(law: Any, elastic: BaseNumbers) -> BaseNumbers:
+    """Return elastic pads with the settlement, and the stiffness there, of another law."""
+    pads: Any = elastic.law
+    own, level = np.zeros(2 * law.variables()), BaseLine(0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
+    carried = pads.law.stiffness * pads.rest
+    at_rest = point_at(level, 0.5, pads.rest)
+    if abs(law.force(0, at_rest, own) - carried) <= _SETTLED * carried:
+        return elastic
+    height = equilibrium_height(
+        Pads(law, *pads[1:]), 2.0 * carried, 2.0 * pads.rest, (0.0, 0.0), own
+    )
+    rest = pads.rest - height
+    check_unloaded_level(law, rest)
+    at_rest = point_at(level, 0.5, rest)
+    stiffness = law.force_rate(0, at_rest._replace(speed=1.0), own)
+    share, noise = stiffness / pads.law.stiffness, pads.noise * max(1.0, pads.rest / rest)
+    settled = pads._replace(
+        rest=rest,
+        rest_energy=law.energy(at_rest, own),
+        frequency=sqrt(2.0 * stiffness),
+        least=pads.least * noise / pads.noise,
+        noise=noise,
+    )
+    return replace(
+        elastic,
+        law=settled,
+        settlement=rest,
+        vertical_stiffness=share * elastic.vertical_stiffness,
+        rotational_stiffness=share * elastic.rotational_stiffness,
+        damping_time=elastic.damping_time / share,
+        end_tolerance=np.maximum(
+            elastic.end_tolerance, np.where(elastic.end_tolerance == pads.noise, noise, 0.0)
+        ),
     )
 
 

@@ -19,6 +19,8 @@ from rockframe.errors import AssemblyError, short_repr
 _EVENTS: Final = {SILENT, *map(int, EventKind)}
 """Kinds of events that a law may report."""
 _STATES_TRIED: Final = 16
+_FAST: Final = 1e9
+"""Speed over the settlement at which any dashpot pulls more than its spring presses [s^-1]."""
 
 
 class _Faults(list[str]):
@@ -107,6 +109,13 @@ def _faults_at_point(
     faults.check(f"{name}.power", law.power(0, point, own))
     faults.check(f"{name}.sunk", law.sunk(own))
     faults.check(f"{name}.return_rate", law.return_rate(), least=0.0)
+    rising = point._replace(speed=-_FAST * point.settlement)
+    if law.return_rate() == 0.0 and law.force(0, rising, own) < 0.0:
+        faults.append(
+            f"{name}.return_rate must be positive: a point that rises fast enough loses its force "
+            "below the unloaded level, to which it then returns at a finite rate, as a spring "
+            "beside a dashpot at their stiffness over their damping"
+        )
     faults.check_each(f"{name}.rates", law.rates(0, point, own), count)
     faults.check_each(f"{name}.seen for {columns} columns", law.seen(0, point, own), columns // 2)
     faults.check_each(f"variable_scales of {name}", scales, count)

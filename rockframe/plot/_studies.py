@@ -255,7 +255,8 @@ def _checked_runs(dataset: xr.Dataset, variable: object) -> xr.Dataset:
     if not 1 <= values.ndim <= _MAX_AXES:
         names = [str(dim) for dim in values.dims]
         way = (
-            f"choose from the others, for example with {first_along('runs', names[-1])}"
+            f"choose from the others, for example with {first_along('runs', names[-1])}, or draw "
+            f"a mean over one, runs.mean({names[-1]!r})"
             if names
             else "rf.case gives a single case, to be simulated and drawn by rf.plot.response"
         )

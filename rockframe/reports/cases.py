@@ -12,7 +12,9 @@ from rockframe.reports import page
 from rockframe.reports.values import column_title, format_number, format_value
 from rockframe.results.outcome import overturned_from_status
 from rockframe.results.variables.runs import RunStatus
+from rockframe.results.variables.studies import MESSAGE
 from rockframe.results.variables.variable import TIME
+from rockframe.simulation.run import NONE
 from rockframe.units import Unit
 from rockframe.units.display import DisplayUnits, unit_suffix, with_superscripts
 
@@ -102,7 +104,8 @@ def _verdict(dataset: xr.Dataset, place: int) -> str:
         overturned = bool(dataset["overturned"].isel(at) == 1)
     elif not overturned:
         return format_value(status)
-    return "overturned" if overturned else "did not overturn"
+    care = MESSAGE in dataset.coords and dataset[MESSAGE].isel(at, missing_dims="ignore") != NONE
+    return f"{'overturned' if overturned else 'did not overturn'}{', with care' * bool(care)}"
 
 
 def _table(

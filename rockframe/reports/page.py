@@ -63,6 +63,11 @@ def banner(title: str, words: str, kind: str) -> str:
     return f'<div class="verdict {kind}">{inner}</div>'
 
 
+def care_banner(words: str) -> str:
+    """Return why a result is to be used with care."""
+    return banner("To be used with care", words, "doubt")
+
+
 def parameter_table(values: Iterable[Sequence[str]], *, head: Sequence[str] = ()) -> str:
     """Return a table; the second column holds values."""
     return _table(values, head, "", lambda column, _: column == 1)

@@ -32,9 +32,8 @@ from rockframe.reports.values import extreme_rows, format_value, scalar_rows
 from rockframe.results.outcome import MIN_REPORTED_SLIP, verdict_of
 from rockframe.results.variables.runs import CERTIFICATE, PROOF
 from rockframe.simulation.certify.certificate import NEAR_WORDS
-from rockframe.simulation.run import NONE
 from rockframe.simulation.system import System
-from rockframe.studies.sweeps.labelling import slips_of_cases
+from rockframe.studies.sweeps.labelling import cautions_of_result, slips_of_cases
 from rockframe.units import ACCELERATION, Unit, to_si
 from rockframe.units.display import DisplayUnits, with_superscripts
 from rockframe.version import __version__
@@ -101,9 +100,8 @@ def verdict_section(dataset: xr.Dataset, reason: str, units: DisplayUnits) -> It
         yield page.banner(title, words, "good" if holds and not near else "doubt")
     elif "proof" not in dataset.attrs:
         yield page.banner("No certificate", reason or "none was requested.", "doubt")
-    cautions = str(dataset.attrs.get("cautions", NONE))
-    if cautions != NONE:
-        yield page.banner("To be used with care", units.convert_text(cautions), "doubt")
+    if cautions := cautions_of_result(dataset):
+        yield page.care_banner(units.convert_text("; ".join(cautions)))
 
 
 def scene_section(dataset: xr.Dataset, system: System | None, units: DisplayUnits) -> Iterator[str]:

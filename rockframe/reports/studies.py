@@ -28,7 +28,11 @@ from rockframe.simulation.system import System
 from rockframe.studies import case, fragility
 from rockframe.studies.sweeps.axes import Changes, described_axes
 from rockframe.studies.sweeps.case import NOT_GIVEN, system_of_case
-from rockframe.studies.sweeps.labelling import cases_verdict, slips_of_cases
+from rockframe.studies.sweeps.labelling import (
+    cases_verdict,
+    cautions_of_result,
+    slips_of_cases,
+)
 from rockframe.units.display import DisplayUnits, with_superscripts
 
 
@@ -43,6 +47,8 @@ def verdict_sections(
     fit = _capacity_fit(dataset)
     if fit:
         verdict.append(page.banner("Fit", with_superscripts(units.convert_text(fit)), ""))
+    if cautions := cautions_of_result(dataset):
+        verdict.append(page.care_banner(units.convert_text("; ".join(cautions))))
     yield page.section("Verdict", [*verdict, *by_codes])
     scalars = scalar_rows(dataset, units=units)
     for title, pieces in (

@@ -13,7 +13,7 @@ from rockframe.errors import SchemaError, short_repr
 from rockframe.motion.display import motion_words
 from rockframe.results.schema import SCHEMA, history_line, without_fill_values
 from rockframe.results.variables.bodies import BODY, RESTRAINER
-from rockframe.results.variables.studies import MOTION
+from rockframe.results.variables.studies import CAUTIONS, MESSAGE, MOTION
 from rockframe.results.variables.variable import AFTER_END, EVENT, TIME
 from rockframe.suggestions import with_hints
 from rockframe.units import attached_unit
@@ -24,7 +24,7 @@ RUN_ATTRIBUTES: Final = frozenset(
         "overturned",
         "overturning_time",
         "overturning_direction",
-        "cautions",
+        CAUTIONS,
         "certificate",
         "certificate_runs",
         "proof",
@@ -92,11 +92,12 @@ def concat(
     -----
     An attribute is kept if every run has it with the same value. Attributes that describe the
     outcome of one run are always left out: the verdict with its certificate and proof, cautions,
-    numbers of the solver (`solver_steps` and others) and of unusual impacts, and the end state; and
-    `case_count` of a sweep. Sweeps that differ only along one axis, or only in their motions,
-    become one sweep. The order in which runs are joined therefore does not matter. `xarray.concat`
-    with ``combine_attrs="drop_conflicts"`` keeps attributes that only some datasets have: if only
-    some of the joined datasets contain runs that overturned, the result would state that none did.
+    which become the coordinate `message`, numbers of the solver (`solver_steps` and others) and of
+    unusual impacts, and the end state; and `case_count` of a sweep. Sweeps that differ only along
+    one axis, or only in their motions, become one sweep. The order in which runs are joined
+    therefore does not matter. `xarray.concat` with ``combine_attrs="drop_conflicts"`` keeps
+    attributes that only some datasets have: if only some of the joined datasets contain runs that
+    overturned, the result would state that none did.
 
     Examples
     --------
@@ -133,6 +134,8 @@ def concat(
     shared = [name for name in parts[0].data_vars if name in common]
     rows = [part[shared].drop_encoding() for part in parts]
     rows = [row if dim in row.dims else row.expand_dims(dim) for row in rows]
+    if all(MESSAGE in row.coords or {CAUTIONS, "status"} <= {*row.attrs, *row} for row in rows):
+        rows = [_with_messages(row, dim) for row in rows]
     _refuse_unlike_units(rows)
     try:
         joined = xr.concat(
@@ -173,6 +176,16 @@ def _check_dimension(runs: Sequence[xr.Dataset], dim: object) -> None:
     if 0 < having < len(runs):
         msg = f"{_OWNER}: {having} of {len(runs)} datasets have the dimension {dim!r}; expected "
         raise SchemaError(msg + "all or none")
+
+
+def _with_messages(row: xr.Dataset, dim: str) -> xr.Dataset:
+    """Return the cautions of a run as messages, and extend messages of joined runs along `dim`."""
+    if MESSAGE in row.coords:
+        message = row[MESSAGE].variable
+        spread = message if dim in message.dims else message.expand_dims(dim)
+        return row.assign_coords({MESSAGE: spread})
+    texts = np.full(row["status"].shape, row.attrs[CAUTIONS], dtype=object)
+    return row.assign_coords({MESSAGE: (row["status"].dims, texts, SCHEMA[MESSAGE].attributes())})
 
 
 def _refuse_unlike_units(rows: Sequence[xr.Dataset]) -> None:

@@ -266,6 +266,7 @@ def overturned_from_status(status: AnyArray) -> Array:
     return verdicts
 
 
+_DID_NOT_SLIDE: Final = "Did not slide"
 _STOP_REASONS = {
     Status.STEP_LIMIT: "the limit of steps was reached",
     Status.STEP_TOO_SMALL: "no step was small enough for the requested accuracy",
@@ -306,7 +307,15 @@ def verdict(run: Summary, setting: Setting, model: ContactModel) -> str:
     slid = [_slip_words(slips) for slips in setting.slips_of(run.ending)]
     if len(slid) > 1:
         names = setting.sliding_bodies or [f"body {k}" for k in range(1, len(slid) + 1)]
-        slid = [f"{names[k]} {words[0].lower()}{words[1:]}" for k, words in enumerate(slid)]
+        held = [names[k] for k, words in enumerate(slid) if words == _DID_NOT_SLIDE]
+        several = len(slid) > 2 and len(held) > 1
+        slid = [
+            f"{names[k]} {words[0].lower()}{words[1:]}"
+            for k, words in enumerate(slid)
+            if not (several and words == _DID_NOT_SLIDE)
+        ]
+        if several:
+            slid.append(f"{enumeration(held)} did not slide" if slid else "no body slid")
     if slid:
         words = ", ".join([*slid, f"{text[0].lower()}{text[1:]}"])
         text = f"{words[0].upper()}{words[1:]}"
@@ -321,7 +330,7 @@ def enumeration(items: Sequence[str], last: str = "and") -> str:
 def _slip_words(slips: SlipRange) -> str:
     """Describe the slip of a body at the end, and its peak where that is much larger."""
     if slips.peak < MIN_REPORTED_SLIP:
-        return "Did not slide"
+        return _DID_NOT_SLIDE
     most = Direction.RIGHT if slips.right > slips.left else Direction.LEFT
     side = Direction.RIGHT if slips.residual > 0.0 else Direction.LEFT
     if abs(slips.residual) < ZERO_RESIDUAL_SHARE * slips.peak:

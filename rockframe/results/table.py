@@ -13,7 +13,7 @@ from rockframe.errors import SchemaError
 from rockframe.results.schema import SCHEMA
 from rockframe.results.variables.bodies import BODY, RESTRAINER
 from rockframe.results.variables.requests import POINT
-from rockframe.results.variables.studies import MOTION
+from rockframe.results.variables.studies import CAUTIONS, MESSAGE, MOTION
 from rockframe.results.variables.variable import EVENT, TIME, TRUTH, flag_words, unit_of
 from rockframe.suggestions import with_hints
 from rockframe.units import Unit
@@ -122,10 +122,14 @@ def table(
 
 
 def _split_places(run: xr.Dataset, kind: Contents) -> xr.Dataset:
-    """Split scalars over points, bodies or restrainers into a variable for each of these."""
+    """Split scalars over points, bodies or restrainers, and add the cautions of a single run."""
     if kind is not Contents.SCALARS or "status" not in run.data_vars:
         return run
-    alone: dict[str, xr.DataArray] = {}
+    alone: dict[str, xr.DataArray | str] = {}
+    if MESSAGE in run.coords and not run[MESSAGE].dims:  # no label of a single case
+        run = run.reset_coords(MESSAGE)
+    if CAUTIONS in run.attrs and MESSAGE not in run.variables and not run["status"].dims:
+        alone[MESSAGE] = run.attrs[CAUTIONS]
     for name, values in run.data_vars.items():
         if name not in SCHEMA or SCHEMA[str(name)].dims not in _PLACES:
             continue

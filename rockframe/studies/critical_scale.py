@@ -21,7 +21,7 @@ from rockframe.signals.motion import extrema_of
 from rockframe.simulation.certify.run_summary import RunSummary
 from rockframe.simulation.plan import Plan, plan_run
 from rockframe.simulation.provenance import motion_attributes
-from rockframe.simulation.run import compute_summary, run
+from rockframe.simulation.run import NONE, compute_summary, run
 from rockframe.simulation.run_arguments import ScaleArguments
 from rockframe.simulation.soundness import STILL_MOVING
 from rockframe.simulation.system import System, check_system
@@ -257,8 +257,8 @@ def _cautions(
     decisive = max(scan.runs) if math.isnan(critical) else critical
     if decisive == critical or has_friction_limit(system.assembly):
         repeated = run(system.assembly, plan_at(decisive))
-        cautions += filter(None, [str(repeated.attrs.get("cautions", ""))])
-    return {"cautions": "; ".join(cautions)} if cautions else {}
+        cautions += {repeated.attrs["cautions"]} - {NONE}
+    return {"cautions": "; ".join(cautions) or NONE}
 
 
 def _scale_dataset(

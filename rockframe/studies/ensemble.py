@@ -19,6 +19,7 @@ from rockframe.studies.confidence import (
 )
 from rockframe.studies.fragility.trials import flatten_like
 from rockframe.studies.probability import SAMPLING_ATTRIBUTE
+from rockframe.studies.sweeps.labelling import cautions_attribute
 from rockframe.suggestions import with_hints
 from rockframe.units import RatioLike
 
@@ -126,6 +127,7 @@ def ensemble_statistics(
             "confidence": requested,
             "references": _REFERENCES,
             "verdict": f"{len(ordered)} members{missing}; {bounds}",
+            **cautions_attribute(values.coords.to_dataset()),
         },
         title="Statistics of an ensemble",
         source="empirical distribution",

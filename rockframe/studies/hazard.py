@@ -20,6 +20,7 @@ from rockframe.errors import (
 )
 from rockframe.results.schema import build_dataset, with_labels, with_variables
 from rockframe.results.variables.analyses import FragilityStatus
+from rockframe.results.variables.studies import CAUTIONS
 from rockframe.results.variables.variable import unit_of, unit_suffix_of
 from rockframe.signals.arrays import Array
 from rockframe.studies.confidence import normal_scores
@@ -171,7 +172,7 @@ def annual_rate(
     for name in ("quantile_intensity", "contributing_intensity"):
         dataset[name].attrs["units"] = unit_of(curves[measure].attrs)
     known = curves.attrs
-    attributes = {key: known[key] for key in (PERIOD_ATTRIBUTE, "model") if key in known}
+    attributes = {key: known[key] for key in (PERIOD_ATTRIBUTE, "model", CAUTIONS) if key in known}
     attributes |= {"intensity": measure, "confidence": known.get("confidence", math.nan)}
     dataset = dataset.assign_attrs(attributes)
     _warn_beyond_curve(dataset, curve)

@@ -26,6 +26,7 @@ from rockframe.studies.intensities import (
     period_attribute,
 )
 from rockframe.studies.limit_states import check_runs, scalar_of
+from rockframe.studies.sweeps.labelling import cautions_attribute
 from rockframe.studies.sweeps.motions import MotionsLike
 from rockframe.suggestions import with_hints
 
@@ -157,7 +158,8 @@ def compare_intensities(
         covariates[name] = numbers[fits[0].included]
     dataset = _comparison_dataset(named, [fit.cloud for fit in fits], covariates)
     words = response if label is None else f"{response} {label}"
-    return dataset.assign_attrs(response=words, verdict=_sentence(dataset))
+    about = {"response": words, "verdict": _sentence(dataset), **cautions_attribute(runs)}
+    return dataset.assign_attrs(about)
 
 
 def _measure_and_period(value: object) -> tuple[Any, Any]:

@@ -241,3 +241,15 @@ def test_trial_impact_loss_equals_kinetic_energy_lost(corners, slip):
     assert [system.trial_sense(k) for k in range(2)] == [np.sign(slip), -np.sign(slip)]
     system.change_velocities(state)
     assert found.loss == pytest.approx(kinetic - system.energies(flying, state).kinetic, rel=1e-12)
+
+
+def test_verdict_lists_the_bodies_that_did_not_slide_once():
+    column, still = [PLATE] * 3, rf.GroundMotion.sine_pulse("0.1 m/s^2", "1 Hz")
+    for below, motion, words in (
+        (1.0, still, "No body slid, did not overturn"),
+        (0.2, noise(1, 4.0), "Body 3 slid 0.0"),
+    ):
+        stack = rf.Stack(*column, interfaces=ground(1.0))
+        verdict = rf.System(stack, ground(below)).simulate(motion).attrs["verdict"]
+        assert verdict.startswith(words), verdict
+    assert ", body 1 and body 2 did not slide, did not overturn" in verdict

@@ -767,3 +767,94 @@ def test_support_must_return_a_support():
         rf.register(Empty)
         with pytest.raises(AssemblyError, match=r"Empty\.support must return a Support, got None"):
             rf.System(BLOCK, Empty())
+
+
+@ext.point_law
+class CubicPad(NamedTuple):
+    """A pad with the force k u + h u^3 + c u', per unit mass."""
+
+    stiffness: float
+    cubic: float
+    damping: float
+
+    def spring(self, point, own):
+        return (self.stiffness + self.cubic * point.pressed**2) * point.pressed
+
+    def energy(self, point, own):
+        square = point.pressed**2
+        return (0.5 * self.stiffness + 0.25 * self.cubic * square) * square
+
+    def force(self, state, point, own):
+        return self.spring(point, own) + self.damping * point.speed
+
+    def force_rate(self, state, point, own):
+        tangent = self.stiffness + 3.0 * self.cubic * point.pressed**2
+        return tangent * point.speed + self.damping * point.acceleration
+
+    def power(self, state, point, own):
+        return self.damping * point.speed**2
+
+    def return_rate(self):
+        return self.stiffness / self.damping
+
+
+@dataclass(frozen=True)
+class CubicSupport(ext.PadSupport):
+    """Pads that harden before they carry the weight."""
+
+    hardening: float  # h delta^2/k, with the settlement delta of elastic pads
+
+    def law(self, body, mass, load_mass):
+        elastic = super().law(body, mass, load_mass)
+        stiffness, damping = self.stiffness / mass, self.damping / mass
+        cubic = self.hardening * stiffness / elastic.settlement**2
+        return ext.pads_over(CubicPad(stiffness, cubic, damping), elastic)
+
+
+class CubicPads(ext.OwnBase):
+    """Pads that harden before they carry the weight."""
+
+    slot = "pads"
+    hardening: ext.Ratio = ext.Ratio(ext.NOT_NEGATIVE, doc="Of the weight.")
+
+    def support(self, load):
+        pads = ext.pads_under(rf.TwoSpringSupport(frequency_ratio=15, damping_ratio=0.1), load)
+        return CubicSupport(load, pads.stiffness, pads.damping, pads.restitution, self.si.hardening)
+
+
+@pytest.fixture
+def cubic():
+    """Make systems on cubic pads of any hardening."""
+    rf.register(CubicPads)
+    return lambda hardening: rf.System(BLOCK, CubicPads(hardening=hardening))
+
+
+def test_settlement_is_that_of_the_law(cubic):
+    elastic = float(cubic(0.0).equilibrium().pad_settlement)
+    (share,) = (root.real for root in np.roots([2.0, 0.0, 1.0, -1.0]) if not root.imag)
+    system = cubic(2.0)
+    rest = system.equilibrium()
+    assert float(rest.pad_settlement) == pytest.approx(share * elastic, rel=1e-12)
+    assert f"settlement delta                   {share * elastic:.6g} m" in system.describe()
+    held = system.moment_rotation(([0.0], "rad"))
+    assert held.held_vertical_displacement.item() == pytest.approx(0.0, abs=1e-12 * elastic)
+    run = system.simulate(PULSE, duration="2.5 s", accuracy="reference", outputs=("energy",))
+    assert run.vertical_displacement[0] == 0.0
+    assert float(run.energy_residual) < 1e-9
+
+
+def test_pads_without_hardening_are_elastic_to_the_last_bit(cubic):
+    pads = rf.TwoSpringSupport(frequency_ratio=15, damping_ratio=0.1)
+    runs = [
+        system.simulate(PULSE, duration="2.5 s") for system in (cubic(0.0), rf.System(BLOCK, pads))
+    ]
+    np.testing.assert_array_equal(runs[0].rotation, runs[1].rotation)
+
+
+def test_dashpot_without_a_return_rate_is_refused(cubic, monkeypatch):
+    monkeypatch.setattr(CubicPad, "return_rate", lambda self: 0.0)
+    words = (
+        r"CubicPad\.return_rate must be positive: a point that rises fast enough loses its force"
+    )
+    with pytest.raises(AssemblyError, match=words):
+        cubic(0.5)

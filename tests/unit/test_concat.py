@@ -121,10 +121,16 @@ def test_xarray_concat_drops_conflicting_run_attributes(runs):
         )
 
 
-def test_concat_drops_cautions_of_single_runs(runs):
+def test_concat_keeps_cautions_of_single_runs_as_messages(runs):
     warned = runs[STANDS].assign_attrs(cautions=CAUTION)
     for chosen in ([warned, runs[2.0]], [runs[2.0], warned], [warned, warned]):
         assert "cautions" not in rf.concat(chosen).attrs
+        joined = rf.concat(chosen, "scale", [1.0, 2.0])
+        assert joined.message.values.tolist() == [one.attrs["cautions"] for one in chosen]
+        assert rf.table(joined).message.tolist() == joined.message.values.tolist()
+        grid = rf.concat([joined, joined], "width", [1, 2])
+        assert grid.message.dims == grid.status.dims
+        assert grid.message.values.tolist() == 2 * [joined.message.values.tolist()]
     with pytest.warns(SolverWarning):
         cut = run(STANDS, accuracy=rf.Accuracy(rtol=1e-7, max_steps=40))
     assert cut.attrs["cautions"].startswith("Not finished")

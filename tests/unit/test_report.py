@@ -13,7 +13,13 @@ import xarray as xr
 from pages import read
 
 import rockframe as rf
-from rockframe.errors import ComponentError, RecordWarning, SchemaError
+from rockframe.errors import (
+    ComponentError,
+    ModelWarning,
+    RecordWarning,
+    SchemaError,
+    SolverWarning,
+)
 from rockframe.reports import cases, sections
 from rockframe.reports.limits import LIMITS
 from rockframe.reports.values import format_value
@@ -439,6 +445,25 @@ def test_report_lists_the_worst_of_many_cases(tmp_path, monkeypatch):
     fallen = [float(one) for one in runs.scale[runs.overturned.squeeze()]]
     assert len(fallen) == 3
     assert all(re.search(rf"\b{scale:g} .{{0,40}}overturned", words) for scale in fallen)
+
+
+def test_reports_of_studies_show_the_cautions_of_their_cases(tmp_path):
+    system = rf.System(rf.Block(width="1 m", height="4 m", mass="4 t"))
+    pulse = rf.GroundMotion.sine_pulse("4 m/s^2", "1 Hz")
+    options = {"scale": [0.01, 1.0, 1.5, 9.0], "progress": False}
+    with pytest.warns(ModelWarning, match="3 of 8 cases have a result to be careful with"):
+        runs = rf.sweep(system, {"a": pulse, "b": pulse.scaled(-0.2)}, **options)
+    with pytest.warns(SolverWarning, match="still has the energy"):
+        critical = rf.critical_scale(system, pulse, scales=20, runs=20)
+    words = "3 of 8 cases: the run ends while the body, which counts as standing, still has the"
+    fit = rf.fragility(runs, "PGA", limits=[])
+    assert fit.attrs["cautions"].startswith(words)
+    for result, stated in ((runs, words), (critical, critical.attrs["cautions"]), (fit, words)):
+        page = Page(rf.report(result, tmp_path / "page.html", overwrite=True).read_text())
+        assert f"To be used with care{stated}" in page.text
+        assert stated in result.rockframe.summary
+    page = Page(rf.report(runs, tmp_path / "page.html", overwrite=True).read_text())
+    assert page.text.count("did not overturn, with care") == 3
 
 
 def test_every_analysis_has_a_report(tmp_path):

@@ -54,6 +54,17 @@ def check_row(row, response):
             np.testing.assert_array_equal(found, values.item(), err_msg=name)
 
 
+def test_cautions_of_runs_are_a_column(runs):
+    warned = runs[0].assign_attrs(cautions="not one to trust")
+    assert rf.table(warned).message.tolist() == ["not one to trust"]
+    assert rf.table([warned, runs[1]]).message.tolist() == ["not one to trust", "none"]
+    assert "message" not in rf.table(warned, "events")
+    assert rf.table(warned).index.names == ["motion"]
+    single = rf.concat([warned, runs[1]], "scale", SCALES[:2]).isel(scale=0)
+    assert rf.table(single).message.tolist() == ["not one to trust"]
+    assert "message" not in rf.table(single).index.names
+
+
 def test_points_and_restrainers_have_separate_columns():
     tie = rf.Restrainer(
         on=("-0.4 m", "4 m"), to=("-2 m", "4 m"), stiffness="1 MN/m", name="strap"
@@ -79,7 +90,8 @@ def test_points_and_restrainers_have_separate_columns():
 def test_a_run_is_a_row_of_its_scalars(runs):
     for response in runs:
         table = rf.table(response)
-        assert table.shape == (1, sum(not values.dims for values in response.data_vars.values()))
+        scalars = sum(not values.dims for values in response.data_vars.values())
+        assert table.shape == (1, scalars + 1)  # the message
         assert table.index.tolist() == [response.attrs["motion"]]
         assert table.index.name == "motion"
         check_row(table.iloc[0], response)

@@ -67,6 +67,9 @@ class StudyDescription:
         """Return the faults of a study with the lines of its file."""
         arguments = {name: self.source.values.get(name) for name in (AXES, SWEEP)}
         tables = {name: table for name, table in arguments.items() if isinstance(table, dict)}
+        if CASES in self.arguments:
+            heads = map(str, self.arguments[CASES].columns)
+            tables[CASES] = {head.partition(" [")[0].strip(): None for head in heads}
         for words in problem.faults:
             places = [key_in_message(words, (name,), table) for name, table in tables.items()]
             self.source.add_fault(max(places, key=len, default=(CASES,)), words)

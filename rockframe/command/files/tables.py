@@ -347,9 +347,9 @@ _SYSTEM: Final = {"System": "system"}
 
 def in_toml(words: str) -> str:
     """Rewrite arguments, points, parts and operations in a message as a file has them."""
-    from rockframe.studies.sweeps.scenes import FUNCTION_ADVICE  # only where there is a message
+    from rockframe.studies.sweeps.scenes import FUNCTION_ADVICE, IN_AXES  # where there is a message
 
-    words = words.replace(FUNCTION_ADVICE, _ONE_FILE_EACH)
+    words = words.replace(FUNCTION_ADVICE, _ONE_FILE_EACH).replace(IN_AXES, "")
     words = _OPERATION.sub(
         r"operations = [{ \g<name> = { factor = \g<value> } }] in [motion]", words
     )

@@ -104,7 +104,7 @@ SLIPS: Final = (
         residual_cap_slip="slip of the cap at the end of the run [m]",
         peak_cap_slip="largest absolute slip of the cap while it bears [m]",
         residual_displacement="horizontal displacement of the centre of mass at the end of the "
-        "run, to the right [m]",
+        "run, to the right; it lasts if the body is at rest then [m]",
     ),
 )
 """Variables of scenes in which a body slides; the slip is that of the corner that bears."""
@@ -118,9 +118,9 @@ FORCE_SCALARS: Final = rows_over(
     peak_impulsive_friction_demand="largest ratio of impulses along and normal to the base, of "
     "impacts",
     peak_base_shear="largest absolute base shear up to overturning [N]",
-    residual_rotation="rotation at the end of the run [rad]",
+    residual_rotation="rotation at the end of the run; it lasts if the body is at rest then [rad]",
     residual_settlement="displacement of the middle of the base below its place at rest, at the "
-    "end of the run [m]",
+    "end of the run; it lasts if the body is at rest then [m]",
     peak_settlement="largest displacement of the middle of the base below its place at rest, up to "
     "overturning [m]",
     would_slide=("whether the friction demand exceeds the coefficient of friction of a base", bool),

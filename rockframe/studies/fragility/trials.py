@@ -21,6 +21,7 @@ from rockframe.results.variables.studies import CASE, MOTION
 from rockframe.signals.arrays import AnyArray, Array
 from rockframe.studies.intensities import column_of_runs
 from rockframe.studies.sweeps.axes import Changes, described_axes
+from rockframe.studies.sweeps.labelling import cautions_attribute
 from rockframe.studies.sweeps.motions import SCALE
 
 Labelled = TypeVar("Labelled", xr.DataArray, xr.Dataset)
@@ -126,11 +127,12 @@ def check_one_structure(
 
 
 def attributes_of_system(runs: xr.Dataset, *, changed: bool | None = None) -> dict[str, Any]:
-    """Return the attributes that describe the system of runs, which a sweep may have changed."""
+    """Return attributes of runs: their system, which a sweep may have changed, and cautions."""
     if changed is None:
         changed = any(name in runs.coords for name in _structural_axes(runs, owner="the runs"))
     names = ("model",) if changed else ("model", "system_json")
-    return {name: runs.attrs[name] for name in names if name in runs.attrs}
+    about = {name: runs.attrs[name] for name in names if name in runs.attrs}
+    return about | cautions_attribute(runs)
 
 
 def _check_pooled(

@@ -60,6 +60,7 @@ def fragility_sentences(fragility: xr.Dataset) -> str:
     fitted = status == FragilityStatus.FITTED
     messages = [_fit_sentence(last, status, fitted)]
     if fitted.any():
+        messages += _extrapolation_sentences(last, fitted)
         messages += _near_separation_sentences(last, fitted)
         independent, trials = (
             last[f"{name}_count"].to_numpy().ravel()[fitted] for name in ("independent", "trial")
@@ -177,6 +178,24 @@ def _separation_sentence(last: xr.Dataset) -> str:
         f"{words}. By the likelihood of nominal {level} the median lies from {least:.4g} to "
         f"{most:.4g}{unit}, the dispersion is at most {spread:.3g}."
     )
+
+
+def _extrapolation_sentences(last: xr.Dataset, fitted: AnyArray) -> Iterator[str]:
+    """Say how many medians lie beyond all intensities of the runs."""
+    names = measures_of(last)
+    if len(names) != 1 or "stripe_intensity" not in last:
+        return
+    # the stripes hold also where a user has cut off a part of the curves
+    tried = np.concatenate([last[names[0]].to_numpy(), last["stripe_intensity"].to_numpy()])
+    least, most = tried.min(), tried.max()
+    medians = last["median_intensity"].to_numpy().ravel()[fitted]
+    if count := int(((medians < least) | (medians > most)).sum()):
+        which = "The median is" if len(fitted) == 1 else f"The medians of {count} structures are"
+        unit = unit_suffix_of(last[names[0]].attrs)
+        yield (
+            f"{which} extrapolated: the intensities of all {last.attrs['trials']} are from "
+            f"{least:.4g} to {most:.4g}{unit}."
+        )
 
 
 def _near_separation_sentences(last: xr.Dataset, fitted: AnyArray) -> Iterator[str]:

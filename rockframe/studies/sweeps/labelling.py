@@ -27,7 +27,14 @@ from rockframe.results.schema import (
 from rockframe.results.variables.bodies import BODY, RESTRAINER
 from rockframe.results.variables.requests import POINT_PEAKS
 from rockframe.results.variables.runs import EVENTS_AND_SCALARS, RunStatus
-from rockframe.results.variables.studies import CASE, MESSAGE, MOTION, REPEATED, VERDICT_CHANGED
+from rockframe.results.variables.studies import (
+    CASE,
+    CAUTIONS,
+    MESSAGE,
+    MOTION,
+    REPEATED,
+    VERDICT_CHANGED,
+)
 from rockframe.results.variables.variable import TIME
 from rockframe.signals.arrays import AnyArray
 from rockframe.simulation.run import NONE
@@ -319,6 +326,33 @@ def warn_of_missing_results(dataset: xr.Dataset, histories: Iterable[str]) -> No
     if absent and not missing.all():
         named = ", ".join(map(repr, absent))
         warn(f"{OWNER}: outputs names {named}, which no scene of the cases has", ModelWarning)
+
+
+def cautions_of_result(dataset: xr.Dataset) -> list[str]:
+    """Return why a result is to be used with care: of the whole, then of how many of its cases."""
+    of_whole = str(dataset.attrs.get(CAUTIONS, NONE))
+    found = [] if of_whole == NONE else [of_whole]
+    if MESSAGE not in dataset.coords:
+        return found
+    size, texts = dataset[MESSAGE].size, Counter[str]()
+    for part in _stored_parts(dataset) if "status" in dataset else [dataset]:
+        # cases that `where` and `reindex` leave out have none
+        texts.update(text for text in part[MESSAGE].to_numpy().ravel() if isinstance(text, str))
+    del texts[NONE]
+    if size == 1:
+        return [*found, *texts]
+    counts = [
+        (sum(texts[text] for text in several), _text_with_ranges(several))
+        for several in _alike(texts)
+    ]
+    counts.sort(key=lambda counted: -counted[0])
+    return [*found, *(f"{count} of {size} cases: {text}" for count, text in counts)]
+
+
+def cautions_attribute(runs: xr.Dataset) -> dict[str, str]:
+    """Return the attribute with the cautions of runs, for what is computed from them."""
+    cautions = cautions_of_result(runs)
+    return {CAUTIONS: "; ".join(cautions)} if cautions else {}
 
 
 def _alike(texts: Iterable[str]) -> Iterable[list[str]]:

@@ -42,6 +42,8 @@ START_AXES: Final = {
 """Axes by their names: which parameter of an initial state each changes, and its kind."""
 FUNCTION_ADVICE: Final = "instead of the system give a function of the axis that returns a System"
 """Advice for axes that no parameter of a scene's own parts has."""
+IN_AXES: Final = ", in axes={...} or cases"
+"""Where to write the name of an axis with a dot."""
 
 
 Values: TypeAlias = Mapping[Axis, Any]
@@ -175,8 +177,7 @@ class SystemScene:
                 kinds = [self._names_of(part)[0] for part in having]
             ways = " or ".join(f"'{kind}.{parameter}'" for kind in kinds)
             return (
-                f"axis {name!r} is a parameter of {' and '.join(kinds)}; name one, in "
-                f"axes={{...}}: {ways}"
+                f"axis {name!r} is a parameter of {' and '.join(kinds)}; name one: {ways}{IN_AXES}"
             )
         parts = self._parts().values()
         known = [

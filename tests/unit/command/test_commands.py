@@ -615,6 +615,16 @@ def test_commands_with_unfinished_runs_exit_with_code_1(words, expected, run_com
     assert "stands throughout" not in out
 
 
+def test_commands_that_read_a_result_repeat_its_cautions(run_command, folder):
+    moving = TEMPLATES["block"].replace('free_vibration = "5 s"', 'duration = "0.55 s"')
+    (folder / "moving.toml").write_text(moving.replace('"-5 m/s^2"', '"-14 m/s^2"'))
+    words = "warning: the run ends while the body, which counts as standing, still has the energy"
+    for command in ("run moving.toml -o out.nc", "plot out.nc -o x.png", "animate out.nc -o x.html",
+                    "report out.nc --no-certificate"):  # fmt: skip
+        code, _, err = run_command(*command.split())
+        assert (code, words in " ".join(err.split())) == (0, True), command
+
+
 def test_plot_of_three_axes_is_refused_with_an_alternative(run_command, folder):
     axes = '[axes]\nscale = [1, 2]\nwidth = ["0.8 m", "0.9 m"]\nheight = ["3 m", "3.2 m"]\n'
     (folder / "study.toml").write_text(f'scene = "scene.toml"\n{axes}')

@@ -373,6 +373,21 @@ def test_sweep_errors_have_the_line_of_their_table(file):
     assert "overturning must be one of" in faults_by_line[8]
 
 
+def test_faults_of_a_table_of_cases_have_its_line(file):
+    cap = (
+        '[cap]\nheight = "0.5 m"\nmass = "2 t"\n[soil]\nstiffness = "9 MPa"\ndamping_ratio = 0.2\n'
+    )
+    file("width [m]\n0.8\n", "rows.csv")
+    study = read_study(file(f'cases = "rows.csv"\n{BLOCK}{cap}[axes]\nheight = ["3 m"]\n'))
+    with pytest.raises(StudyError) as caught:
+        rf.sweep(study.system, study.motions, duration="1 s", **study.arguments)
+    assert all("in axes={...} or cases" in fault for fault in caught.value.faults)
+    faults_by_line = dict(study.at_lines(caught.value).faults)
+    words = "is a parameter of Block and CushionCap; name one:"
+    assert faults_by_line[1] == f"axis 'width' {words} 'Block.width' or 'CushionCap.width'"
+    assert f"axis 'height' {words}" in faults_by_line[13]
+
+
 def test_templates_can_be_read(file):
     for name, text in TEMPLATES.items():
         if name == "study":

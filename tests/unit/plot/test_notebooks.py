@@ -1,6 +1,7 @@
 """Notebook cards, and summaries and plots of datasets."""
 
 import re
+from html import escape
 from html.parser import HTMLParser
 
 import numpy as np
@@ -8,7 +9,7 @@ import pytest
 import xarray as xr
 
 import rockframe as rf
-from rockframe.errors import ComponentError, SchemaError
+from rockframe.errors import ComponentError, ModelWarning, SchemaError, SolverWarning
 from rockframe.notebook import number_with_unit, readable_arguments, sparkline
 
 BLOCK = rf.Block(width="0.8 m", height="4 m", mass="2 t", centre_of_mass=("2 m", "0.1 m"))
@@ -149,6 +150,23 @@ def test_a_dataset_read_back_plots_and_tabulates_itself(tmp_path):
         summary = stored.rockframe.summary
     assert run.attrs["verdict"] in summary
     assert f"peak_rotation: {run.peak_rotation.item():.4g} rad" in summary
+
+
+def test_summary_and_card_show_cautions():
+    rocking = rf.System(rf.Block(width="1 m", height="4 m", mass="4 t"))
+    pulse = PULSE.scaled(2.0)
+    with pytest.warns(SolverWarning, match="still has the energy"):
+        run = rocking.simulate(pulse)
+    with pytest.warns(ModelWarning, match="a result to be careful with"):
+        runs = rf.sweep(rocking, pulse, scale=[0.01, 1.0], progress=False)
+    for result, words in ((run, run.attrs["cautions"]), (runs, "1 of 2 cases: the run ends")):
+        assert f"to be used with care: {words}" in result.rockframe.summary
+        html = result.rockframe._repr_html_()
+        assert "to be used with care" in html
+        assert escape(words) in html
+    still = rocking.simulate(PULSE.scaled(0.01))
+    assert "care" not in still.rockframe.summary
+    assert "care" not in runs.isel(scale=0).rockframe.summary
 
 
 def test_summary_omits_missing_values():

@@ -7,6 +7,7 @@ import pytest
 from matplotlib import pyplot
 
 import rockframe as rf
+from rockframe.errors import SchemaError
 from rockframe.plot._axes import label_log_ticks
 from rockframe.results.variables.runs import RunStatus
 
@@ -48,6 +49,17 @@ def test_sweep_title_counts_cases_without_a_result():
     del failed.attrs["verdict"]
     assert "1 have no result" in rf.plot.sweep(failed).figure.get_suptitle()
     assert rf.plot.sweep(runs).figure.get_suptitle() == runs.attrs["verdict"]
+
+
+def test_sweep_of_three_axes_is_drawn_as_a_mean():
+    motions = dict.fromkeys(("a", "b"), PULSE)
+    runs = rf.sweep(SYSTEM, motions, scale=[0.5, 0.6], gravity=["9.8 m/s^2", "10 m/s^2"], **QUIET)
+    with pytest.raises(SchemaError, match=r"or draw a mean over one, runs\.mean\('motion'\)"):
+        rf.plot.sweep(runs)
+    (lower, upper) = rf.plot.sweep(runs.mean("motion"), "peak_rotation").get_lines()[:2]
+    for line, gravity in ((lower, 9.8), (upper, 10.0)):
+        expected = runs.peak_rotation.mean("motion").sel(gravity=gravity)
+        np.testing.assert_array_equal(line.get_ydata(), expected)
 
 
 def test_sweep_over_motions_draws_no_connecting_line():

@@ -164,6 +164,13 @@ def test_block_overturning_without_motion_has_zero_critical_scale():
     assert result.verdict.startswith("Overturns without the motion")
 
 
+def test_cautions_about_scales_name_no_absent_ones():
+    with pytest.warns(SolverWarning, match="still has the energy to overturn"):
+        result = rf.critical_scale(RIGID, PULSE, scales=20, runs=20)
+    assert result.cautions.startswith("critical_scale: at ")
+    assert not result.cautions.endswith("none")
+
+
 def test_unfinished_runs_have_no_verdict():
     limit = rf.Accuracy(rtol=1e-6, max_steps=400)
     options = {**FEW_RUNS, "accuracy": limit, "scales": 20, "runs": 20}

@@ -46,6 +46,25 @@ def test_sweep_over_structures_needs_pooling():
         rf.ensemble_statistics(table)
 
 
+def test_cautions_of_runs_follow_into_what_is_computed_from_them():
+    runs = rf.sweep(SYSTEM, motions(8), scale=[2.0, 4.0, 8.0, 12.0], **OPTIONS)
+    texts = runs.message.copy(data=runs.message.to_numpy())
+    texts[:2, 0] = "not one to trust"
+    runs = runs.assign_coords(message=texts)
+    stated = "2 of 32 cases: not one to trust"
+    fit = rf.fragility(runs, "PGA", limits=[])
+    hazard = {"intensity": ([0.5, 1.0, 9.0, 80.0], "m/s^2"), "rate": [0.1, 0.01, 1e-3, 1e-8]}
+    for found in (
+        rf.ensemble_statistics(runs, pooled=["scale"]),
+        rf.ensemble_statistics(runs.peak_relative_rotation, pooled=["scale"]),
+        rf.compare_intensities(runs, ["PGA", "PGV"]),
+        rf.cloud_analysis(runs, "PGA", limits=[]),
+        fit,
+        rf.annual_rate(fit, hazard),
+    ):
+        assert found.attrs["cautions"] == stated, found.attrs["title"]
+
+
 def test_members_without_a_result_are_counted():
     runs = rf.sweep(SYSTEM, motions(), scale=[2.0], **OPTIONS)
     fail(runs, motion=1)

@@ -187,6 +187,15 @@ def test_two_measures_find_the_coefficients():
     assert (np.abs(found.coefficients - [-0.3, 2.0, 1.0]) < 3.5 * errors).all()
 
 
+def test_verdict_tells_a_median_beyond_all_intensities():
+    words = "The median is extrapolated: the intensities of all trials are from 1 to 3 m s^-2."
+    for exceeded, is_beyond in (([0, 1, 4], True), ([1, 5, 9], False), ([7, 8, 9], True)):
+        found = fragility_of_counts(([1.0, 2.0, 3.0], "m/s^2"), exceeded, 10)
+        assert (words in found.verdict) is is_beyond
+        cut = found.sel(peak_ground_acceleration=slice(1.9, 2.1))
+        assert ("extrapolated" in cut.rockframe.verdict) is is_beyond
+
+
 def test_counts_without_a_fit_have_a_status():
     cases = {
         FragilityStatus.NONE_EXCEEDED: [0, 0, 0],
