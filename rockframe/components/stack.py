@@ -12,10 +12,19 @@ from rockframe.components.block_numbers import BlockSI
 from rockframe.components.parameters import SIValues
 from rockframe.components.registry import component_from_dict
 from rockframe.errors import ComponentError, raise_faults, short_repr, unexpected_argument
-from rockframe.units import LENGTH, Quantity, QuantityLike, quantity, quantity_text, to_si
+from rockframe.units import (
+    LENGTH,
+    Quantity,
+    QuantityLike,
+    quantity,
+    quantity_text,
+    to_ratio,
+    to_si,
+)
 
 MAX_BODIES: Final = 12
 """Most bodies in a stack: the combined contact states of more exceed the range of integers."""
+_OFFSET: Final = "offset"
 
 
 @dataclass(frozen=True)
@@ -141,22 +150,25 @@ class Stack(Component[StackSI]):
         return [text for part in (*self.bodies, *self.interfaces) for text in part.cautions()]
 
     def parameters(self) -> tuple[str, ...]:
-        """Name the numbers of bodies and interfaces other than zero.
+        """Name the numbers of bodies and interfaces, and the offsets, other than zero.
 
         Returns
         -------
         tuple of str
-            For example "height of body 1" and "stiffness of interface 1", from the top down.
+            For example "height of body 1", "stiffness of interface 1" and "offset of body 1", from
+            the top down.
         """
-        return tuple(
+        names = [
             f"{name} of {kind} {k}"
             for kind, parts in (("body", self.bodies), ("interface", self.interfaces))
             for k, part in enumerate(parts, 1)
             for name in part.parameters()
-        )
+        ]
+        offsets = (f"{_OFFSET} of body {k}" for k, one in enumerate(self.given.offsets, 1) if one)
+        return (*names, *offsets)
 
     def with_scaled(self, name: str, factor: float) -> Self:
-        """Build a stack with one number of a body or an interface multiplied by a factor.
+        """Build a stack with one number of a body or an interface, or an offset, multiplied.
 
         Parameters
         ----------
@@ -179,10 +191,14 @@ class Stack(Component[StackSI]):
         own, _, place = name.partition(" of ")
         kind, _, k = place.partition(" ")
         bodies, interfaces = list(self.bodies), list(self.interfaces)
-        parts: list[Any] = bodies if kind == "body" else interfaces
-        parts[int(k) - 1] = parts[int(k) - 1].with_scaled(own, factor)
+        offsets = list(self.offsets)
+        if own == _OFFSET:
+            offsets[int(k) - 1] *= to_ratio(factor, owner="Stack", name="factor", example="1.1")
+        else:
+            parts: list[Any] = bodies if kind == "body" else interfaces
+            parts[int(k) - 1] = parts[int(k) - 1].with_scaled(own, factor)
         part = object.__new__(type(self))
-        part._set_parts(bodies, interfaces, self._arguments()["offsets"])
+        part._set_parts(bodies, interfaces, offsets)
         return part
 
     def replace(self, **changes: Any) -> Self:

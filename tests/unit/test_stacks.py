@@ -265,9 +265,18 @@ def test_every_stack_parameter_can_be_scaled():
         STACK.with_scaled("offsets", 2.0)
 
 
+def test_offsets_of_a_stack_are_scaled_one_by_one():
+    drums = rf.Stack(STATUE, PLINTH, PLINTH, interfaces=JOINT, offsets=["2 cm", "0 m"])
+    assert "offset of body 2" not in drums.parameters()
+    changed = drums.with_scaled("offset of body 1", 0.5)
+    assert changed == drums.replace(offsets=["1 cm", "0 m"])
+    assert drums.with_scaled("mass of body 1", 2.0).offsets == drums.offsets
+
+
 @pytest.mark.parametrize("joint", [JOINT, rf.RigidGround()])
 def test_certificate_varies_all_stack_parameters(joint):
-    stack = rf.Stack(STATUE, PLINTH, interfaces=[joint])
+    stack = rf.Stack(STATUE, PLINTH, interfaces=[joint], offsets=["1 cm"])
+    assert "offset of body 1" in stack.parameters()
     scenes = dict(parameters(rf.System(stack, GROUND).assembly))
     assert {f"{name.replace('_', ' ')} of the stack" for name in stack.parameters()} < set(scenes)
     changed = scenes["height of body 1 of the stack"](1e-3)
