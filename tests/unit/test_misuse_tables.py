@@ -192,6 +192,7 @@ VALUES = {
     "simulate(outputs={'acceleration': False})": "outputs has no {'acceleration': False}",
     "simulate(accuracy='faast')": "simulate: accuracy must be one of",
     "sweep(store='')": "store must be the path of a folder, got ''",
+    r"sweep(store='a\0b')": r"store must be the path of a folder, got 'a\x00b'",
     # parts
     "block(width=0.8)": "width needs a length with a unit, got 0.8",
     "block(width='0.8 s')": "width needs a length in a unit such as m, got '0.8 s'",
@@ -408,6 +409,7 @@ VALUES = {
     "rf.open_study('kept')": "kept: found no study",
     "rf.open_study('cut')": "damaged",
     "rf.open_study(3)": "store must be the path of a folder, got 3",
+    r"rf.open_study('~\0')": r"store must be the path of a folder, got '~\x00'",
     "rf.open_study('store', lazy='yes')": "lazy must be True or False, got 'yes'",
     "rf.fragility(run)": "a single run, which is no sweep",
     "rf.fragility(runs, 'SA')": "needs a period",
