@@ -8,7 +8,7 @@ import numpy as np
 import xarray as xr
 
 from rockframe.arguments import checked_function, checked_integer
-from rockframe.errors import ComponentError, short_repr
+from rockframe.errors import ComponentError, UnitsError, short_repr
 from rockframe.motion import GroundMotion
 from rockframe.results.outcome import overturns
 from rockframe.results.schema import SCHEMA, with_labels, with_variables
@@ -25,6 +25,7 @@ from rockframe.system.rigid_ground import RigidGroundSetting
 from rockframe.units import ACCELERATION, FREQUENCY, RatioLike, quantity
 
 _OWNER: Final = "overturning_map"
+_EXAMPLE: Final = "lambda a, f: rf.GroundMotion.ricker_wavelet(a, 1 / f)"
 _STANDING: Final = -1.0
 _MAX_IMPACTS: Final = 1000
 _PEAK_TOLERANCE: Final = 1e-6
@@ -151,8 +152,8 @@ def _unit_pulse(pulse: object, frequency: float) -> GroundMotion:
         if not {"amplitude", "frequency"} <= set(described) or "operations" in described:
             needed = "an amplitude and a frequency, without operations such as scaled"
             msg = (
-                f"{_OWNER}: pulse needs {needed}, got {pulse.name!r}; give a function of both that "
-                "returns a GroundMotion"
+                f"{_OWNER}: pulse needs {needed}, got {pulse.name!r}; give a function of both, "
+                f"{_EXAMPLE}"
             )
             raise ComponentError(msg)
         sign = "-" if str(described["amplitude"]).startswith("-") else ""
@@ -164,11 +165,18 @@ def _unit_pulse(pulse: object, frequency: float) -> GroundMotion:
     if not callable(pulse):
         msg = (
             f"{_OWNER}: pulse must be a GroundMotion or a function such as "
-            f"rf.GroundMotion.sine_pulse, got {short_repr(pulse)}"
+            f"rf.GroundMotion.sine_pulse, or {_EXAMPLE}, got {short_repr(pulse)}"
         )
         raise ComponentError(msg)
     pulse = checked_function(pulse, "amplitude", "frequency", owner=_OWNER, name="pulse")
-    motion = pulse(quantity(1.0, ACCELERATION), quantity(frequency, FREQUENCY))
+    try:
+        motion = pulse(quantity(1.0, ACCELERATION), quantity(frequency, FREQUENCY))
+    except UnitsError as problem:
+        msg = (
+            f"{_OWNER}: pulse is called with an acceleration and a frequency, as is {_EXAMPLE}; "
+            f"{problem}"
+        )
+        raise UnitsError(msg) from problem
     if not isinstance(motion, GroundMotion):
         msg = f"{_OWNER}: pulse must return a GroundMotion, got {short_repr(motion)}"
         raise ComponentError(msg)

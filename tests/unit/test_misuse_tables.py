@@ -195,6 +195,7 @@ VALUES = {
     r"sweep(store='a\0b')": r"store must be the path of a folder, got 'a\x00b'",
     # parts
     "block(width=0.8)": "width needs a length with a unit, got 0.8",
+    "rf.TwoSpringSupport(friction=0.3)": "neither was given; rigid contact with friction",
     "block(width='0.8 s')": "width needs a length in a unit such as m, got '0.8 s'",
     "rf.Load(at=('0 m', 3), vertical='1 kN')": "Load: at[1] needs a length with a unit, got 3",
     "block(width='0.8 metr')": "'0.8 metr', whose unit cannot be read",
@@ -428,6 +429,8 @@ VALUES = {
     "critical(width=4)": "'bracket_width'",
     "critical(intensity='SA')": "needs a period",
     "map_of('sine_pulse')": "pulse must be a GroundMotion or a function",
+    "map_of(rf.GroundMotion.type_a_pulse)": "pulse is called with an acceleration and a frequency",
+    "map_of(rf.GroundMotion.ricker_wavelet('1 g', '1 s'))": "lambda a, f: rf.GroundMotion.ricker",
     "map_of(lambda a: PULSE)": "pulse must be a function of amplitude and frequency",
     "map_of(amplitude=[1, 2])": "amplitude needs an acceleration with a unit",
     "map_of(frequency=([1.0], 's'))": "frequency needs a cyclic frequency",
