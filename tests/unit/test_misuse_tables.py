@@ -430,7 +430,7 @@ VALUES = {
     "critical(intensity='SA')": "needs a period",
     "map_of('sine_pulse')": "pulse must be a GroundMotion or a function",
     "map_of(rf.GroundMotion.type_a_pulse)": "pulse is called with an acceleration and a frequency",
-    "map_of(rf.GroundMotion.ricker_wavelet('1 g', '1 s'))": "lambda a, f: rf.GroundMotion.ricker",
+    "map_of(rf.GroundMotion.type_a_pulse('1 m/s', '1 s'))": "lambda a, f: rf.GroundMotion.ricker",
     "map_of(lambda a: PULSE)": "pulse must be a function of amplitude and frequency",
     "map_of(amplitude=[1, 2])": "amplitude needs an acceleration with a unit",
     "map_of(frequency=([1.0], 's'))": "frequency needs a cyclic frequency",
