@@ -174,6 +174,7 @@ def test_map_command_replaces_no_pulse_of_the_scene_by_another(run_command, fold
         assert code == expected
         assert ("Pulse:   ricker wavelet" in out) == (code == 0)
         assert ("pulse needs an amplitude and a frequency or a period" in problem) == (code == 2)
+        assert "lambda" not in problem
         assert run_command("map", "other.toml", *arguments, "--pulse", "sine_pulse")[0] == 0
 
 
