@@ -15,8 +15,8 @@ _MARK_SEARCH_LENGTH: Final = 65536
 """Length at both ends of a file within which the mark of rockframe is found [bytes]."""
 
 PathLike: TypeAlias = str | os.PathLike[str]
-Content: TypeAlias = bytes | Callable[[Path], object]
-"""All bytes of a file, or a function that writes it to a path."""
+Content: TypeAlias = str | bytes | Callable[[Path], object]
+"""All text or bytes of a file, or a function that writes it to a path."""
 
 
 @dataclass(frozen=True)
@@ -84,7 +84,9 @@ def write_file(
     target = checked_path(path, kind, overwrite=overwrite, read=read)
     part = target.with_name(f".{os.getpid()}.{os.urandom(4).hex()}{Path(path).suffix}")
     try:
-        if isinstance(content, bytes):
+        if isinstance(content, str):  # a name of a motion may have letters that cannot be written
+            part.write_bytes(content.encode(errors="replace"))
+        elif isinstance(content, bytes):
             part.write_bytes(content)
         else:
             content(part)

@@ -336,13 +336,13 @@ def _pulse(scene: SceneDescription, name: str | None) -> tuple[Any, str]:
         msg = f"--pulse: {name!r} is no pulse of an amplitude and a frequency alone{listed}"
         raise ComponentError(msg)
     motion = scene.motion
-    described = {} if motion is None else motion.to_dict()
-    if name is None and set(_MAP_AXES) <= set(described):
+    if name is None and motion is not None and motion.si.horizontal.polynomials is not None:
+        described = motion.to_dict()
         words = [str(described["constructor"]).replace("_", " ")]
         words += [
             f"{key}: {value:g}" if isinstance(value, int | float) else f"{key}: {value}"
             for key, value in described.items()
-            if key not in (*_MAP_AXES, *_CONSTRUCTOR_KEYS)
+            if key not in (*_MAP_AXES, "period", *_CONSTRUCTOR_KEYS)
         ]
         return motion, ", ".join(words)
     name = name or _DEFAULT_PULSE

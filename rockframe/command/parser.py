@@ -19,8 +19,8 @@ _FUNCTION_PREFIX: Final = re.compile(
     r"simulate|serve|rf\.plot\.\w+): "
 )
 """Names of functions at the head of messages, which do not help on the command line."""
-_PYTHON_HINT: Final = re.compile(r"; suite\.\w+ lists all")
-"""Where Python holds what a message does not list, of which the command line has nothing."""
+_PYTHON_HINT: Final = re.compile(r"; suite\.\w+ lists all|; give a function of amplitude .*")
+"""What only Python has: where it holds what a message does not list, and functions."""
 _SCENE_ARGUMENT: Final = "scene"
 """Argument of the commands that read the file of a scene."""
 _INVALID_CHOICE: Final = re.compile(r"invalid choice: '(.*?)'")

@@ -10,7 +10,7 @@ import logging
 import sys
 import sysconfig
 from collections.abc import Callable, Generator, Sequence
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from dataclasses import dataclass
 from functools import cache, cached_property
 from importlib import import_module
@@ -234,25 +234,33 @@ class Job:
     def make(self, waiting: Callable[[], bool] = lambda: True) -> Any:
         """Return the compiled function: loaded from the store, or compiled now."""
         file = self.file
-        keep = file is not None
         if file is not None and self.is_stored:
             try:
-                return self._compiled(keep=True)
-            except Exception:  # damaged: reading it may raise anything
+                return self._loaded(file)
+            except Exception:  # damaged, or of another compiler: reading it may raise anything
                 _warn_once(f"machine code in {file.parent} was damaged, and is compiled anew")
-                keep = store.has_removed_code(file)
         register_kernels()
-        if file is None or not keep:
+        if file is None:
             return self._compiled(keep=False)
         with store.lock_while_compiling(file, waiting):
+            with suppress(Exception):  # another process may have stored it meanwhile
+                return self._loaded(file)
+            if not store.has_removed_code(file):
+                return self._compiled(keep=False)
             try:
-                return self._compiled(keep=True)
+                code = self._compiled(keep=True)
+                store.complete_code(file)
             except OSError as problem:  # the disk may be full
                 _warn_once(
                     f"machine code cannot be kept in {file.parent} ({problem.strerror}), and is "
                     "made anew each time"
                 )
                 return self._compiled(keep=False)
+            return code
+
+    def _loaded(self, file: Path) -> Any:
+        store.check_code(file)
+        return self._compiled(keep=True)
 
     def _compiled(self, *, keep: bool) -> Any:
         # a bound function would print its exceptions, and go on

@@ -14,6 +14,7 @@ from importlib.util import resolve_name
 from pathlib import Path
 from types import ModuleType
 from typing import TYPE_CHECKING, Any, Final
+from zlib import crc32
 
 if TYPE_CHECKING:
     from importlib.resources.abc import Traversable
@@ -201,10 +202,8 @@ def module_file(function: Callable[..., Any], text: str, classes: Iterable[type]
             else:
                 code_folder(file).mkdir(parents=True, exist_ok=True)
                 _remove_unused(folder)
-            if not file.is_file():  # other processes see the whole file or none
-                part = file.with_suffix(f".{os.getpid()}")
-                part.write_text(text)
-                part.replace(file)
+            if not file.is_file():
+                _write(file, text)
         except OSError:
             if not has_code(file):  # by another user: it can be read
                 continue
@@ -217,9 +216,44 @@ def code_folder(file: Path) -> Path:
     return file.parent / "__pycache__"
 
 
+def _write(file: Path, text: str) -> None:
+    """Write a file, of which other processes see the whole or nothing."""
+    part = file.with_suffix(f".{os.getpid()}")
+    part.write_text(text)
+    part.replace(file)
+
+
 def has_code(file: Path) -> bool:
-    """Whether machine code of a module is stored beside it."""
-    return any(code_folder(file).glob(f"{file.stem}.*.nbc"))
+    """Whether machine code of a module is stored beside it, and complete."""
+    return _checksum_file(file).is_file()
+
+
+def check_code(file: Path) -> None:
+    """Raise an error if stored machine code is damaged: it could end the process."""
+    if _checksum_file(file).read_text() != _checksum(file):
+        msg = f"the machine code of {file} is damaged"
+        raise ValueError(msg)
+
+
+def complete_code(file: Path) -> None:
+    """Write the checksum of the machine code of a module, where numba has stored some."""
+    if _code_files(file):
+        _write(_checksum_file(file), _checksum(file))
+
+
+def _checksum(file: Path) -> str:
+    total = 0
+    for stored in _code_files(file):
+        total = crc32(stored.read_bytes(), total)
+    return f"{total:08x}"
+
+
+def _checksum_file(file: Path) -> Path:
+    return code_folder(file) / f"{file.stem}.crc"
+
+
+def _code_files(file: Path) -> list[Path]:
+    return sorted(code_folder(file).glob(f"{file.stem}.*.nb[ci]"))
 
 
 def is_compiled_elsewhere(file: Path) -> bool:
@@ -251,8 +285,8 @@ def lock_while_compiling(file: Path, waiting: Callable[[], bool]) -> Generator[N
 def has_removed_code(file: Path) -> bool:
     """Remove the machine code of a module; return whether that is permitted."""
     try:
-        for code_file in code_folder(file).glob(f"{file.stem}.*.nb[ci]"):
-            code_file.unlink(missing_ok=True)
+        for stored in (_checksum_file(file), *_code_files(file)):
+            stored.unlink(missing_ok=True)
     except OSError:
         return False
     return True

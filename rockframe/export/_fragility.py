@@ -282,7 +282,7 @@ def to_openquake(
     Tree.indent(root)
     model_xml = Tree.tostring(root, encoding="unicode")
     document = f"{_PROLOGUE}<!-- {_SIGNATURE}{__version__} -->\n{model_xml}\n"
-    return write_file(path, _FILE_KIND, document.encode(), overwrite=overwrite)
+    return write_file(path, _FILE_KIND, document, overwrite=overwrite)
 
 
 def _fitted_limit_states(

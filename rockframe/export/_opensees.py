@@ -163,7 +163,7 @@ def to_opensees(
         "rotation": (run["rotation"].to_numpy()[on_output_step], 9),
     }
     text = _file_text(_docstring(system, motion, base, dashpot_behaviour), values, arrays)
-    return write_file(path, _FILE_KIND, text.encode(), overwrite=overwrite)
+    return write_file(path, _FILE_KIND, text, overwrite=overwrite)
 
 
 def _check_supported(system: System) -> None:

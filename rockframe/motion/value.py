@@ -91,8 +91,7 @@ class MotionValue(Immutable):
                 raise ComponentError(msg)
         values = {
             "si": si,
-            "name": _one_line(checked_text(name, owner=type(self).__name__, name="name"))
-            or UNNAMED,
+            "name": one_line(checked_text(name, owner=type(self).__name__, name="name")) or UNNAMED,
             "metadata": MappingProxyType(entries),
             "history": tuple(map(_OneLine, history)),
             "recipe": None if recipe is None else MappingProxyType(dict(recipe)),
@@ -187,7 +186,8 @@ def replaced(motion: MotionType, **changes: Any) -> MotionType:
     return type(motion)(**{**values, **changes})
 
 
-def _one_line(text: str) -> str:
+def one_line(text: str) -> str:
+    """Return a text on one line, without letters that cannot be printed."""
     if not text.isprintable():
         text = "".join(letter if letter.isprintable() else " " for letter in text)
     return " ".join(text.split())
@@ -199,4 +199,4 @@ class _OneLine(str):
     __slots__ = ()
 
     def __new__(cls, text: str) -> _OneLine:
-        return text if isinstance(text, cls) else super().__new__(cls, _one_line(text))
+        return text if isinstance(text, cls) else super().__new__(cls, one_line(text))

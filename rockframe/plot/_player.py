@@ -114,7 +114,7 @@ class Player:
         FileError
             Another ending, or a file that cannot be written or is not replaced.
         """
-        return write_file(path, FILE_KIND, self._html.encode(), overwrite=overwrite)
+        return write_file(path, FILE_KIND, self._html, overwrite=overwrite)
 
     def to_html(self) -> str:
         """Return the page.

@@ -221,7 +221,7 @@ class CodeCheck:
         body = [f"<h1>{escape(self.title)}</h1>", page.paragraph(self.code, kind="soft")]
         body += [*_scene_paragraph(self, chosen), *verdict_banners(self, chosen)]
         body += [page.section(title, [piece]) for title, piece in _tables(self, chosen)]
-        content = page.html_page(self.title, body).encode()
+        content = page.html_page(self.title, body)
         return write_file(path, FILE_KIND, content, overwrite=overwrite)
 
 

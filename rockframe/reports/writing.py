@@ -200,7 +200,7 @@ def report(
         *body,
         page.section("Provenance", sections.provenance_section(dataset, Path(source).name)),
     ]
-    written = page.html_page(heading, content).encode()
+    written = page.html_page(heading, content)
     return write_file(path, page.FILE_KIND, written, overwrite=overwrite, read=read)
 
 

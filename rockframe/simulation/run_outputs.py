@@ -305,7 +305,7 @@ def compute_or_note(
     """Compute a further result of a finished run; if that fails, note it and return the default."""
     try:
         return work()
-    except Warning:  # the user has made warnings errors
+    except (Warning, MemoryError):  # made an error by the user; which says nothing of the run
         raise
     except Exception as problem:
         missing.append(f"{what} could not be computed: {words_of(problem)}")

@@ -336,7 +336,7 @@ def integrate(
         run.mode, run.state, counters,
         duration=duration, output_step=output_step, with_work=with_work,
     )  # fmt: skip
-    if keep_steps and not with_work:
+    if keep_steps:
         rows.expect_in_steps(pieces, interval)
     tables = Tables(run, model, duration / interval if keep_steps else None, exact=exact)
     equations = equations_of(model.system, fixed_steps=not exact, with_work=with_work)

@@ -52,10 +52,14 @@ class OutputRows:
             counters[at.OUTPUTS] = 1
 
     def expect_in_steps(self, pieces: Pieces, interval: float) -> None:
-        """Leave out what the table of steps will hold: output times that are samples."""
+        """Leave out what the table of steps will hold: output times that are samples.
+
+        With works, which it does not hold, their rows are filled, too.
+        """
         if len(self.mode):
             self._expected = self._count_on_samples(max(map(len, pieces)), interval)
-            self._counters[at.OUTPUTS] += self._expected
+            if not len(self.work):
+                self._counters[at.OUTPUTS] += self._expected
 
     def _count_on_samples(self, intervals: int, interval: float) -> int:
         """Count the output times behind the start that are samples of the motion."""
@@ -76,7 +80,7 @@ class OutputRows:
         self.in_steps = 1 + np.flatnonzero(reached[1:] > reached[:-1])[: self._expected]
         count = 1 + len(self.in_steps)
         self.mode[1:count] = steps.mode[self.in_steps]
-        if count <= self._expected:  # the run ended before
+        if count <= self._expected and not len(self.work):  # the run ended before
             self._counters[at.OUTPUTS] = count
         self._expected = 0
 

@@ -8,7 +8,7 @@ import numpy as np
 import xarray as xr
 
 from rockframe.arguments import checked_function, checked_integer
-from rockframe.errors import ComponentError, short_repr
+from rockframe.errors import ComponentError, UnitsError, short_repr
 from rockframe.motion import GroundMotion
 from rockframe.results.outcome import overturns
 from rockframe.results.schema import SCHEMA, with_labels, with_variables
@@ -22,9 +22,10 @@ from rockframe.studies.sweeps.arguments import SweepArguments
 from rockframe.studies.sweeps.motions import SCALE
 from rockframe.system.options import Overturning
 from rockframe.system.rigid_ground import RigidGroundSetting
-from rockframe.units import ACCELERATION, FREQUENCY, RatioLike, quantity
+from rockframe.units import ACCELERATION, FREQUENCY, TIME, RatioLike, quantity
 
 _OWNER: Final = "overturning_map"
+_EXAMPLE: Final = "lambda a, f: rf.GroundMotion.ricker_wavelet(a, 1 / f)"
 _STANDING: Final = -1.0
 _MAX_IMPACTS: Final = 1000
 _PEAK_TOLERANCE: Final = 1e-6
@@ -49,8 +50,8 @@ def overturning_map(
     system : System
         The scene.
     pulse : GroundMotion or callable
-        An analytic pulse with an amplitude and a frequency, both of which are replaced; or a
-        function of both, as Quantities, that returns a motion, such as
+        An analytic pulse with an amplitude and a frequency or a period, which are replaced; or a
+        function of amplitude and frequency, as Quantities, that returns a motion, such as
         ``rf.GroundMotion.sine_pulse``. The motion must be proportional to the amplitude.
     amplitude : values with a unit
         Positive amplitudes that are run first: ``([1, 2, 3], "m/s^2")`` [m s^-2].
@@ -148,27 +149,36 @@ def _unit_pulse(pulse: object, frequency: float) -> GroundMotion:
     """Return the pulse of a frequency, with an amplitude of one."""
     if isinstance(pulse, GroundMotion):
         described = pulse.to_dict()
-        if not {"amplitude", "frequency"} <= set(described) or "operations" in described:
-            needed = "an amplitude and a frequency, without operations such as scaled"
+        times = {
+            "frequency": f"{frequency!r} {FREQUENCY.unit}",
+            "period": f"{1.0 / frequency!r} {TIME.unit}",
+        }
+        replaced = {name: text for name, text in times.items() if name in described}
+        if "amplitude" not in described or not replaced or "operations" in described:
+            needed = "an amplitude and a frequency or a period, without operations such as scaled"
             msg = (
-                f"{_OWNER}: pulse needs {needed}, got {pulse.name!r}; give a function of both that "
-                "returns a GroundMotion"
+                f"{_OWNER}: pulse needs {needed}, got {pulse.name!r}; give a function of "
+                f"amplitude and frequency, {_EXAMPLE}"
             )
             raise ComponentError(msg)
         sign = "-" if str(described["amplitude"]).startswith("-") else ""
-        changed = {
-            "amplitude": f"{sign}1 {ACCELERATION.unit}",
-            "frequency": f"{frequency!r} {FREQUENCY.unit}",
-        }
-        return GroundMotion.from_dict({**described, **changed})
+        replaced["amplitude"] = f"{sign}1 {ACCELERATION.unit}"
+        return GroundMotion.from_dict({**described, **replaced})
     if not callable(pulse):
         msg = (
             f"{_OWNER}: pulse must be a GroundMotion or a function such as "
-            f"rf.GroundMotion.sine_pulse, got {short_repr(pulse)}"
+            f"rf.GroundMotion.sine_pulse, or {_EXAMPLE}, got {short_repr(pulse)}"
         )
         raise ComponentError(msg)
     pulse = checked_function(pulse, "amplitude", "frequency", owner=_OWNER, name="pulse")
-    motion = pulse(quantity(1.0, ACCELERATION), quantity(frequency, FREQUENCY))
+    try:
+        motion = pulse(quantity(1.0, ACCELERATION), quantity(frequency, FREQUENCY))
+    except UnitsError as problem:
+        msg = (
+            f"{_OWNER}: pulse is called with an acceleration and a frequency, as is {_EXAMPLE}; "
+            f"{problem}"
+        )
+        raise UnitsError(msg) from problem
     if not isinstance(motion, GroundMotion):
         msg = f"{_OWNER}: pulse must return a GroundMotion, got {short_repr(motion)}"
         raise ComponentError(msg)

@@ -7,6 +7,7 @@ from typing import Final
 from rockframe.errors import PLEASE_REPORT, ComponentError, RecordError, RecordWarning, warn
 from rockframe.motion import GroundMotion
 from rockframe.motion.constructors.records import motion_of_reading
+from rockframe.motion.value import one_line
 from rockframe.records import (
     Known,
     Reading,
@@ -188,7 +189,7 @@ class _SuiteReader:
         self.remarks += assign_records(self.components)
 
     def _label(self, reading: Reading, *, alone: bool) -> str:
-        stem = reading.name or PurePath(reading.file).stem
+        stem = one_line(reading.name or PurePath(reading.file).stem)
         plain = stem if alone else f"{stem} {reading.metadata.get('component', '')}".strip()
         label, count = plain, 1
         while label in self._labels:

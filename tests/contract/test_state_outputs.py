@@ -133,3 +133,17 @@ def test_first_sample_follows_all_events_at_start():
         if "left_reaction" in response:
             assert response.left_reaction[0] >= 0.0
             assert response.right_reaction[0] >= 0.0
+
+
+@pytest.mark.parametrize("accuracy", ["standard", "fast"])
+@pytest.mark.parametrize("name", ["rigid ground", "slippery pads", "stack on pads"])
+def test_energies_among_the_outputs_change_no_other_output(name, accuracy):
+    noise = np.random.default_rng(3).normal(size=60)
+    motion = rf.GroundMotion.from_arrays((4.0 * noise, "m/s^2"), time_step="0.02 s")
+    system = rf.System(*SCENES[name])
+    with plain_python():
+        alone, more = (
+            system.simulate(motion, outputs=outputs, accuracy=accuracy)
+            for outputs in (["reaction"], ["reaction", "energy"])
+        )
+    assert alone.drop_attrs().identical(more[list(alone.data_vars)].drop_attrs())

@@ -231,6 +231,14 @@ def test_functions_do_not_replace_foreign_files(folder):
     mpl.pyplot.close("all")
 
 
+def test_letters_that_cannot_be_written_are_replaced(folder):
+    title = "citt\udce0"
+    rf.report(xr.open_dataset(folder / "run.nc"), "title.html", title=title, certify=False)
+    rf.plot.player(xr.open_dataset(folder / "run.nc"), title=title).save("player.html")
+    for name in ("title.html", "player.html"):
+        assert "citt?" in Path(name).read_text(encoding="utf-8")
+
+
 def test_file_is_written_completely_or_left_unchanged(tmp_path):
     kind = FileKind.marked("a text", (".txt",), "by rockframe")
     path = tmp_path / "x.txt"

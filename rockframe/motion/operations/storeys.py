@@ -247,8 +247,9 @@ def through_storeys(
     modes : int, optional
         Number of modes of the storeys to keep, those of the longest periods; by default all.
     free_vibration : str or Quantity, optional
-        Duration of free vibration after the ground motion; by default until every mode has decayed
-        to a hundredth of its amplitude [s].
+        Duration of free vibration after the ground motion, to zero along a straight line from the
+        last sample of a record; by default until every mode has decayed to a hundredth of its
+        amplitude [s].
     time_step : str or Quantity, optional
         Greatest time step of the floor motion: that of the ground motion is divided into equal
         parts. The default is that of the ground motion [s].

@@ -280,6 +280,8 @@ class _Collector(CollectedResults):
 
     def _add_failure(self, case: int, problem: Exception) -> None:
         """Note why a case has no run."""
+        if isinstance(problem, MemoryError):  # which says nothing of the case
+            raise problem
         self._set_message(case, words_of(problem))
         self._clear(case)
         self._status[case] = RunStatus.REFUSED

@@ -241,6 +241,12 @@ def _collect_results(
             raise KeyboardInterrupt from None
         except RockframeError:
             raise
+        except MemoryError as problem:
+            msg = (
+                f"there is too little memory to go on ({problem}); a store keeps what is finished, "
+                "and an executor with fewer workers needs less"
+            )
+            raise StudyError(msg) from problem
         except Exception as problem:
             raise _executor_error(problem) from problem
         chunk = running.pop(future)

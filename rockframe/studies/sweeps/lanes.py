@@ -131,7 +131,7 @@ def run_assembled_singly(
                     if moved not in motions:
                         motions[moved] = cases.ground_motion(case)  # which may fail
                     groups.setdefault(scene.kind, []).append((case, scene, motions[moved]))
-            except RockframeError:  # which is reported when the case runs alone
+            except (RockframeError, MemoryError):  # which is reported when the case runs alone
                 continue
             except Exception as problem:
                 yield Failed(case, problem)

@@ -407,7 +407,7 @@ def stored_dataset(stored: Store, *, lazy: bool) -> xr.Dataset:
 
 def read_folder(path: object, *, owner: str = "") -> Path:
     """Read the argument ``store``, of a function that is named in messages, if there is one."""
-    if isinstance(path, PathLike) or (isinstance(path, str) and path):
+    if isinstance(path, str | PathLike) and str(path) and "\0" not in str(path):
         with suppress(RuntimeError):  # of a user without a home
             # a program may change its folder while it runs, or before it reads lazily
             return Path(path).expanduser().absolute()  # pyright: ignore[reportUnknownArgumentType]

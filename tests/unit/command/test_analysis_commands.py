@@ -160,6 +160,24 @@ def test_map_command_takes_a_harmonic_motion_of_the_scene(run_command, folder):
     assert (code, "pulse needs an amplitude and a frequency" in problem) == (2, True)
 
 
+def test_map_command_replaces_no_pulse_of_the_scene_by_another(run_command, folder):
+    """A map of sine pulses was printed for all of these."""
+    arguments = ("--amplitude", "2,8 m/s^2", "--frequency", "2 Hz", "--accuracy", "fast")
+    before, after = TEMPLATES["block"].split("[motion]", maxsplit=1)[0], "\n[run]\n"
+    for pulse, expected in (
+        ('"ricker_wavelet"\namplitude = "5 m/s^2"\nperiod = "2 s"', 0),
+        ('"type_a_pulse"\nvelocity = "1 m/s"\nperiod = "2 s"', 2),
+    ):
+        scene = f"{before}[motion]\nconstructor = {pulse}{after}"
+        (folder / "other.toml").write_text(scene + 'free_vibration = "5 s"')
+        code, out, problem = run_command("map", "other.toml", *arguments)
+        assert code == expected
+        assert ("Pulse:   ricker wavelet" in out) == (code == 0)
+        assert ("pulse needs an amplitude and a frequency or a period" in problem) == (code == 2)
+        assert "lambda" not in problem
+        assert run_command("map", "other.toml", *arguments, "--pulse", "sine_pulse")[0] == 0
+
+
 @pytest.mark.usefixtures("records")
 def test_pictures_of_several_motions_need_the_name_of_a_file(run_command):
     """The message was about a file called --1."""

@@ -133,7 +133,35 @@ def test_processes_that_start_at_once_do_not_harm_each_other(own, folder):
     for process in [start() for _ in range(2)]:
         assert lines_of(process)[-1] == "[4.0, -9.0]"
     assert run("reuse") == ["[4.0, -9.0]"]
-    assert {path.suffix for path in written(folder)} == {".py", ".nbc", ".nbi"}
+    assert {path.suffix for path in written(folder)} == {".py", ".nbc", ".nbi", ".crc"}
+
+
+@pytest.mark.parametrize("suffix", [".nbc", ".nbi", ".crc", ".py"])
+def test_damaged_files_are_compiled_anew(own, folder, suffix):
+    *_, result = run()
+    files = [file for file in written(folder) if file.suffix == suffix]
+    assert len(files) == 2
+    for file in files:
+        content = bytearray(file.read_bytes())
+        instructions = max(content.find(b"\x7fELF"), 0) + 64  # where an object file has them
+        content[instructions : instructions + 8] = bytes(8)
+        file.write_bytes(content)
+    *_, again = run()
+    assert again == result
+    assert run("reuse") == [result]
+
+
+def test_code_of_a_process_killed_before_its_checksum_was_written_is_not_loaded(own, folder):
+    *_, result = run()
+    for file in written(folder):
+        if file.suffix == ".crc":
+            file.unlink()
+        elif file.suffix == ".nbc":
+            os.truncate(file, 1000)
+    first, *_, again = run()
+    assert first.startswith(ANNOUNCEMENT)
+    assert again == result
+    assert run("reuse") == [result]
 
 
 def test_helper_compiles_importable_functions(own, folder, monkeypatch):

@@ -45,6 +45,17 @@ def test_overturning_map_has_labels_and_reproduces_its_cases(tmp_path):
         assert np.array_equal(mirrored[name].values, found[name].values, equal_nan=True), name
 
 
+def test_overturning_map_takes_a_pulse_of_a_period():
+    options = {"amplitude": ([3, 6], "m/s^2"), "frequency": (["1 Hz", "3 Hz"]), **FAST}
+    ricker = rf.GroundMotion.ricker_wavelet
+    found = rf.overturning_map(SYSTEM, ricker("1 m/s^2", "7 s", antisymmetric=True), **options)
+    expected = rf.overturning_map(
+        SYSTEM, lambda a, f: ricker(a, 1 / f, antisymmetric=True), **options
+    )
+    assert np.array_equal(found.peak_rotation.values, expected.peak_rotation.values)
+    assert not np.array_equal(found.peak_rotation[:, 0], found.peak_rotation[:, 1])
+
+
 def test_rocking_spectrum_equals_single_runs_of_resized_blocks(tmp_path):
     found = rf.rocking_spectrum(
         SYSTEM, motions(), periods=([2.0, 3.0], "s"), slenderness=[3, 5], **FAST

@@ -16,6 +16,8 @@ from stored_sweep import BLOCK, CASES, PULSE, SYSTEM, as_bytes, run_sweep, start
 import rockframe as rf
 from rockframe.errors import StudyError
 from rockframe.results.variables.runs import RunStatus
+from rockframe.simulation import run
+from rockframe.studies.sweeps import chunk as chunks
 
 pytestmark = pytest.mark.filterwarnings("ignore::rockframe.errors.SolverWarning")
 
@@ -81,6 +83,33 @@ def test_killed_worker_loses_only_chunks_in_flight(tmp_path, monkeypatch):
     assert 0 < (rf.open_study(folder).status != RunStatus.NOT_RUN).sum() < 12
     found = rf.sweep(scene_killed_once, PULSE, store=folder, **arguments)
     assert as_bytes(found) == as_bytes(rf.sweep(scene_killed_once, PULSE, **arguments))
+
+
+def run_short_of_memory(*_, **__):
+    msg = "Unable to allocate 9 GiB"
+    raise MemoryError(msg)
+
+
+@pytest.mark.parametrize(
+    ("where", "name"),
+    [
+        (chunks, "compute_response"),
+        (chunks, "_cautions_and_scalars"),
+        (run, "energy_caution"),
+        (run, "compute_outputs"),
+    ],
+)
+def test_too_little_memory_is_no_result_of_a_case(tmp_path, monkeypatch, where, name):
+    folder = tmp_path / "study"
+    arguments = {"height": HEIGHTS, "outputs": ["rotation"], "output_step": "0.1 s"}
+    with monkeypatch.context() as patch:
+        patch.setattr(where, name, run_short_of_memory)
+        with pytest.raises(StudyError, match=r"too little memory.*Unable to allocate 9 GiB"):
+            rf.sweep(SYSTEM, PULSE, store=folder, **arguments)
+        assert (rf.open_study(folder).status == RunStatus.NOT_RUN).all()
+    found = rf.sweep(SYSTEM, PULSE, store=folder, **arguments)
+    assert (found.message == "none").all()
+    assert (found.status == RunStatus.COMPLETED).all()
 
 
 class Disk:

@@ -219,6 +219,17 @@ def test_pipes_and_broken_links_are_skipped(folder):
     check_download(rf.read_suite(folder))
 
 
+@pytest.mark.skipif(os.name == "nt", reason="file names there are text")
+def test_a_file_name_that_is_no_text_gives_a_label_that_can_be_written(tmp_path):
+    name = os.fsdecode(b"citt\xe0.AT2")
+    (tmp_path / name).write_bytes(FILES[f"{HORIZONTAL[0]}.AT2"])
+    (tmp_path / os.fsdecode(b"citt\xe8.AT2")).write_bytes(FILES[f"{HORIZONTAL[1]}.AT2"])
+    suite = rf.read_suite([tmp_path / name, tmp_path / os.fsdecode(b"citt\xe8.AT2")])
+    assert list(suite) == ["citt", "citt (2)"]
+    suite.to_dataset().to_netcdf(tmp_path / "suite.nc")
+    assert list(rf.read_suite(tmp_path / "suite.nc")) == list(suite)
+
+
 def test_damaged_table_warns(folder):
     intact = table().decode()
     row = next(line for line in intact.splitlines() if line.startswith("6,"))
