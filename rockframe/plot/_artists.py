@@ -117,6 +117,12 @@ class SceneArtist:
         for name, place in self._points.items():
             self._draw_point(name, self.builder.points_at(placement, place))
 
+    @property
+    def moving(self) -> list[Any]:
+        """All artists that can move."""
+        still = ("ground", "surface", "wall")
+        return [one for key, one in self._artists.items() if not key.startswith(still)]
+
     def draw_legend(self) -> None:
         """Write the names of the parts next to the drawing."""
         handles = [

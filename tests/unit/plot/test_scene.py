@@ -1,5 +1,6 @@
 """Scenes to scale: positions of corners, pads, soil and cap agree with closed forms."""
 
+from io import BytesIO
 from shutil import which
 
 import numpy as np
@@ -8,6 +9,7 @@ from matplotlib.patches import Polygon
 
 import rockframe as rf
 from rockframe.errors import ComponentError, FileError, SchemaError, UnitsError
+from rockframe.plot._animation import _FilmedFigure
 from rockframe.plot._layout import LayoutBuilder
 from rockframe.plot._runs import read_runs
 from rockframe.plot._scene import SceneHistory
@@ -312,6 +314,33 @@ def test_animation_frames_are_evenly_spaced_and_saved(tmp_path):
     with pytest.raises(FileError, match=r"ends in '\.avi'; that of an animation ends in \.gif or "):
         moving.save(tmp_path / "run.avi")
     assert rf.plot.animation(run, speed=2.0).times.size == 21
+
+
+def test_a_film_draws_once_what_does_not_move(tmp_path, monkeypatch):
+    from matplotlib.axis import Axis
+
+    run = rf.System(EVEN, PADS, CAP, SOIL).simulate(PULSE)
+    moving = rf.plot.animation(run, frames_per_second=5)
+    assert moving.panels[1].get_legend() is not None
+    canvas, size, dpi = moving.figure.canvas, moving.figure.get_size_inches(), moving.figure.dpi
+    with _FilmedFigure.of(moving.figure, moving._draw, 60.0) as filmed:
+        for filmed.number in range(moving.times.size):
+            frames = [BytesIO(), BytesIO()]
+            filmed.savefig(frames[0])
+            for artist in moving._draw(filmed.number):
+                artist.set_animated(False)
+            moving.figure.savefig(frames[1], dpi=60, format="rgba")
+            first, full = (np.frombuffer(one.getvalue(), np.uint8).astype(int) for one in frames)
+            assert np.abs(first - full).max() <= 1
+    drawn, draw = [], Axis.draw
+    monkeypatch.setattr(Axis, "draw", lambda *given: (drawn.append(1), draw(*given))[1])
+    moving.save(tmp_path / "run.gif", dpi=60)
+    panels = len(moving.panels)
+    assert len(drawn) == 2 * panels
+    assert (moving.figure.canvas, moving.figure.dpi) == (canvas, dpi)
+    np.testing.assert_array_equal(moving.figure.get_size_inches(), size)
+    artists = [artist for axes in moving.panels for artist in axes.get_children()]
+    assert not any(artist.get_animated() for artist in artists)
 
 
 def test_mp4_animation_requires_ffmpeg(tmp_path, monkeypatch):
