@@ -32,6 +32,7 @@ from rockframe.plot._panels import (
 )
 from rockframe.studies.dynamic_analysis import verdict_of_analysis
 from rockframe.studies.fragility.trials import at_scales
+from rockframe.studies.hazard import verdict_of_rates
 from rockframe.units.display import UnitsLike, with_superscripts
 
 _PANELS: Final = {"peaks": 1.4, "shares": 1.0}
@@ -388,4 +389,4 @@ def annual_rate(
     )  # fmt: skip
     axes.set_ylim(bottom=0.0)
     label_log_ticks(axes)
-    return sheet.finish(with_superscripts(str(data.attrs["verdict"])), title)
+    return sheet.finish(with_superscripts(verdict_of_rates(data)), title)

@@ -29,6 +29,7 @@ from rockframe.studies import case, fragility
 from rockframe.studies.sweeps.axes import Changes, described_axes
 from rockframe.studies.sweeps.case import NOT_GIVEN, system_of_case
 from rockframe.studies.sweeps.labelling import cases_verdict, slips_of_cases
+from rockframe.studies.verdicts import verdict_of_study
 from rockframe.units.display import DisplayUnits, with_superscripts
 
 
@@ -36,7 +37,7 @@ def verdict_sections(
     dataset: xr.Dataset, about: Project, units: DisplayUnits, by_codes: Sequence[str] = ()
 ) -> Iterator[str]:
     """Return the verdicts of the cases and of codes, the figure, and the numbers."""
-    sentence = cases_verdict(dataset)
+    sentence = verdict_of_study(dataset)
     verdict = [*about.conclusion_banner()]
     if sentence:
         verdict.append(_banner(dataset, units.convert_text(sentence)))
