@@ -67,6 +67,7 @@ def _single_structure(dataset: xr.Dataset, variable: str, function: str, named: 
     "a dynamic analysis",
     "rf.incremental_dynamic_analysis(system, motions)",
     ("capacity_scale", "flip_count", "peak_relative_rotation", "scale"),
+    along=("limit_state", "motion", "scale"),
     ax="Axes, one for each panel",
     title="the verdict",
 )
@@ -217,6 +218,7 @@ def _peak_fractiles(lines: list[tuple[Any, Any]], up: Any) -> list[tuple[float, 
     "fractile curves",
     "rf.fractile_curves(runs)",
     ("response_fractile", "intensity_fractile", "motion_response"),
+    along=("motion", "quantile", "response_level"),
     title="the verdict",
 )
 def fractile_curves(
@@ -279,6 +281,7 @@ def fractile_curves(
     "a cloud",
     "rf.cloud_analysis(runs)",
     ("cloud_response", "residual_dispersion", "fragility_status"),
+    along=("run",),
     title="the verdict",
 )
 def cloud(
@@ -328,8 +331,9 @@ def cloud(
         for size in (1.0, 2.0):
             ends = (np.exp(log_median + sign * size * spread) for sign in (-1.0, 1.0))
             axes.fill_between(x, *ends, color=COLOURS[0], alpha=0.12, linewidth=0.0)
-    for limit in limits:
-        axes.axhline(limit, color="0.3", lw=0.8, ls=":")
+    for number, limit in enumerate(limits):
+        words = None if number else "limits"
+        axes.axhline(limit, color=text_colour(), lw=0.8, ls=":", label=words)
     response_name = data["cloud_response"].rename(str(data.attrs["response"]))
     axes.set(
         xscale="log", yscale="log", ylim=(low / 1.3, high * 1.3),
@@ -343,6 +347,7 @@ def cloud(
     "annual rates",
     "rf.annual_rate(fragility, hazard)",
     ("annual_rate", "rate_share"),
+    along=("contributing_intensity",),
     title="the verdict",
 )
 def annual_rate(
@@ -379,9 +384,11 @@ def annual_rate(
         rate = float(rates["annual_rate"])
         if np.isnan(rate):
             continue
+        shares, colour = 100.0 * rates["rate_share"].to_numpy(), line_colour(number)
+        axes.stairs(shares, edges, color=colour, fill=True, alpha=0.25)
         axes.stairs(
-            100.0 * rates["rate_share"].to_numpy(), edges, color=line_colour(number), lw=1.4,
-            fill=True, alpha=0.35, label=f"{limit_state_label(rates)}: {rate:.3g} a year",
+            shares, edges, color=colour, lw=1.4, ls=line_style(number),
+            label=f"{limit_state_label(rates)}: {rate:.3g} a year",
         )  # fmt: skip
     axes.set(
         xscale="log", ylabel="share of the rate [%]",

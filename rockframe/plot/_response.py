@@ -50,6 +50,10 @@ _COLOUR_COLUMNS: Final = 1 << 14
 """More than the pixels of a figure: the colours within a pixel are then averaged well."""
 
 
+_LEGEND_DISTANCE: Final = 0.5
+"""Distance of the legend from the strip above it [in]."""
+
+
 def draw_contact(axes: Axes, state: xr.DataArray, name: str) -> None:
     """Draw the contact state as a strip of colours.
 
@@ -69,9 +73,10 @@ def draw_contact_legend(axes: Axes, state: xr.DataArray) -> None:
     from matplotlib.patches import Patch
 
     names = flag_words(state.attrs).values()
+    height = axes.get_window_extent().height / axes.figure.dpi
     axes.legend(
         handles=[Patch(facecolor=CONTACT_COLOURS[name], label=name) for name in names],
-        loc="upper center", bbox_to_anchor=(0.5, -1.6), ncols=len(names),
+        loc="upper center", bbox_to_anchor=(0.5, -_LEGEND_DISTANCE / height), ncols=len(names),
         fontsize="small", frameon=False,
     )  # fmt: skip
 

@@ -42,6 +42,7 @@ _PANELS: Final = ("histories", "residual")
     "a critical scale",
     "rf.critical_scale(system, motion)",
     ("critical_scale", "scale_above", "outcome", "peak_rotation"),
+    along=("scale",),
     title="the verdict",
 )
 def critical_scale(
