@@ -159,7 +159,8 @@ def _draw_peaks(
         words = "motions" if number == 0 else None
         if not several:
             words = as_label(str(curve["motion"].item()))
-        axes.plot(line[1], line[0], color=colour, lw=0.7, label=words)
+        dashes = line_style(0 if several else number)
+        axes.plot(line[1], line[0], color=colour, ls=dashes, lw=0.7, label=words)
         for some, face in ((places[:1], colour), (places[1:], "none")):
             axes.plot(np.full(len(some), PEAK_CAP), some, "o", mfc=face, color=colour, ms=3)
         lines.append(line)
@@ -188,8 +189,9 @@ def _draw_shares(axes: Axes, dataset: xr.Dataset, intensity: xr.DataArray) -> No
         ordered = np.sort(np.array([0.0, *places]))
         shares = np.arange(len(ordered)) / max(1, len(capacity))
         axes.step(
-            shares, ordered, where="pre", color=line_colour(number), label=as_label(str(state))
-        )
+            shares, ordered, where="pre", color=line_colour(number), ls=line_style(number),
+            label=as_label(str(state)),
+        )  # fmt: skip
     axes.set(xlabel="share of the motions [-]", xlim=(0.0, 1.02))
 
 

@@ -317,7 +317,7 @@ def _labelled_structures(state: xr.Dataset, structures: list[str]) -> list[tuple
 
 def _draw_curves(axes: Axes, named: list[tuple[str, xr.Dataset]], measure: str) -> None:
     for number, (name, curve) in enumerate(named):
-        colour, dashes = line_colour(number), line_style(number // len(COLOURS))
+        colour, dashes = line_colour(number), line_style(number)
         along = curve[measure].to_numpy()
         if int(curve["fragility_status"]) in _FITTED_STATUSES:
             axes.fill_between(

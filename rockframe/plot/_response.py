@@ -27,6 +27,7 @@ from rockframe.plot._axes import (
     axis_label,
     figure_units,
     line_colour,
+    line_style,
     text_colour,
     zero_line,
 )
@@ -372,7 +373,8 @@ def _draw_history(axes: Axes, runs: list[Run], name: str, units: DisplayUnits) -
             part = as_label(str(row[first].item()), _MAX_NAME_LENGTH) if first in row.coords else ""
             label = ", ".join(filter(None, (run.label, part))) or None
             colour = run.colour if len(rows) == 1 else line_colour(number)
-            axes.plot(run.time, unit.of(row), color=colour, linestyle=run.style, linewidth=0.9,
+            style = run.style if len(runs) > 1 else line_style(number)
+            axes.plot(run.time, unit.of(row), color=colour, linestyle=style, linewidth=0.9,
                       label=label)  # fmt: skip
     if name == SLIP and len(runs) == 1 and CAP_SLIP in runs[0].dataset:
         axes.lines[-1].set_label("block")

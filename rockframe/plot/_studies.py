@@ -300,7 +300,7 @@ def _draw_lines(
             label = text if named else f"{line_dim.replace('_', ' ')} {text}"
         axes.plot(
             places, line, marker="o", markersize=3.0, color=line_colour(number), linewidth=1.0,
-            linestyle=line_style(number // 6) if _is_numeric_axis(dataset, x_dim) else "none",
+            linestyle=line_style(number) if _is_numeric_axis(dataset, x_dim) else "none",
             label=label,
         )  # fmt: skip
         crossed = overturned.isel(selected).to_numpy()

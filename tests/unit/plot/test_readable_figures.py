@@ -78,6 +78,27 @@ def test_results_are_visible_in_a_dark_style():
     assert "#ffffff" not in faces
 
 
+def test_compared_lines_differ_without_colours():
+    widths = ["0.6 m", "0.7 m", "0.8 m"]
+    runs = rf.sweep(SYSTEM, MOTIONS, scale=[0.5, 1.0, 2.0, 4.0], width=widths, progress=False)
+    analysis = rf.incremental_dynamic_analysis(
+        SYSTEM, MOTIONS, scale=[0.5, 1.0, 2.0, 4.0], intensity="PGA", limits=[0.3], progress=False
+    )
+    run = SYSTEM.simulate(PULSE, points={"top": ("0 m", "4 m"), "lamp": ("0 m", "2 m")})
+    peaks, shares = rf.plot.dynamic_analysis(analysis)
+    lines = [
+        rf.plot.sweep(runs.isel(motion=0)).get_lines(),
+        peaks.get_lines(),
+        shares.get_lines(),
+        rf.plot.response(run, panels="point_horizontal_displacement")[0].get_lines(),
+    ]
+    for drawn, count in zip(lines, (3, 2, 2, 2), strict=True):
+        labelled = [line for line in drawn if not line.get_label().startswith("_")]
+        named = [line for line in labelled if line.get_label() != "overturned"]
+        assert len(named) == count
+        assert len({line.get_linestyle() for line in named}) == count
+
+
 def test_one_motion_or_slenderness_of_a_spectrum_is_drawn():
     axes = {"periods": ([2.0, 3.0], "s"), "slenderness": [4.0, 5.0], "progress": False}
     rotation = rf.rocking_spectrum(SYSTEM, MOTIONS, **axes)
