@@ -297,6 +297,8 @@ def _part_layers(history: SceneHistory, layouts: Sequence[Layout]) -> Iterator[_
     yield _Layer("block", "outline", BLUE, fill, moving(lambda layout: layout.block))
     yield from each("members", "outline", BLUE, 0.3)
     yield from each("restrainers", "line", VERMILLION, 0.0)
+    for k in range(len(first.loads)):
+        yield _Layer("load", "point", GREEN, 1.0, moving(lambda layout, k=k: layout.loads[[k]]))
     yield _Layer("centre of mass", "cross", "ink", 1.0, moving(lambda layout: layout.centres))
     for contacts in zip(*(layout.contacts for layout in layouts), strict=True):
         ends = np.array([contact[[0, -1]] for contact in contacts])  # a point's coincide
