@@ -222,7 +222,6 @@ _FITTED_STATUSES: Final = (FragilityStatus.FITTED, FragilityStatus.SEPARATED)
     "a fragility",
     "rf.fragility(runs)",
     ("exceedance_probability", "fragility_status"),
-    along=("stripe",),
     ax="Axes, or one for each limit state",
     title="the verdict",
 )
