@@ -128,6 +128,7 @@ def _mark_small_errors(axes: Axes, errors: Any) -> None:
 
 def _legend_handles(dataset: xr.Dataset, models: list[str]) -> "list[Line2D]":
     """Return the legend: the accuracies, hollow markers and crosses."""
+    from matplotlib import rcParams
     from matplotlib.lines import Line2D
 
     keys = [
@@ -135,6 +136,6 @@ def _legend_handles(dataset: xr.Dataset, models: list[str]) -> "list[Line2D]":
         for k, name in enumerate(dataset["accuracy"].to_numpy())
     ]
     if any(_SMALL_ROTATIONS in model for model in models):
-        style: Any = {"marker": "o", "color": GREY, "mfc": "none", "ls": "none"}
+        style: Any = {"marker": "o", "color": GREY, "ls": "none", "mfc": rcParams["axes.facecolor"]}
         keys.append(Line2D([], [], **style, label=f"hollow: {_SMALL_ROTATIONS}"))
     return [*keys, Line2D([], [], marker="x", color=GREY, ls="none", ms=10, label="other verdict")]
