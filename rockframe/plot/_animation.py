@@ -27,6 +27,8 @@ from rockframe.writing import FileKind, checked_path, write_file
 if TYPE_CHECKING:
     from matplotlib.animation import FuncAnimation
     from matplotlib.artist import Artist
+else:
+    Artist = Any
 
 
 _MAX_FRAMES: Final = 200
@@ -55,7 +57,7 @@ def check_film_program(ending: str, path: str | Path) -> None:
 class _FilmedFigure:
     """A figure for the writers of films; all but the artists that move is drawn once."""
 
-    def __init__(self, figure: Figure, draw: Callable[[int], Iterable["Artist"]]) -> None:
+    def __init__(self, figure: Figure, draw: Callable[[int], Iterable[Artist]]) -> None:
         from matplotlib.backends.backend_agg import FigureCanvasAgg
 
         self.figure, self.number, self._draw, self._still = figure, 0, draw, None
@@ -64,7 +66,7 @@ class _FilmedFigure:
     @classmethod
     @contextmanager
     def of(
-        cls, figure: Figure, draw: Callable[[int], Iterable["Artist"]], pixels: float
+        cls, figure: Figure, draw: Callable[[int], Iterable[Artist]], pixels: float
     ) -> "Generator[_FilmedFigure]":
         """Draw a figure on a canvas of pixels, and return it to its own canvas."""
         canvas, size, dpi = figure.canvas, tuple(figure.get_size_inches()), figure.dpi
@@ -132,7 +134,7 @@ class Animation:
     def __init__(
         self,
         panels: Panels,
-        draw: Callable[[int], Iterable["Artist"]],
+        draw: Callable[[int], Iterable[Artist]],
         rate: float,
         times: np.ndarray,
         player: Callable[[], Player],
@@ -318,7 +320,7 @@ def animation(
     over = [spine for axes in sheet.panels for spine in axes.spines.values()]
     over += filter(None, [trace.get_legend()])
 
-    def draw(number: int) -> "list[Artist]":
+    def draw(number: int) -> list[Artist]:
         sample = int(samples[number])
         artist.draw(history.placement_at(sample))
         instant = float(shown_run.time[sample])
