@@ -159,15 +159,9 @@ class RockframeAccessor:
     @property
     def verdict(self) -> str:
         """The outcome in one sentence, of a run or of a selection of cases."""
-        from rockframe.studies.dynamic_analysis import verdict_of_analysis
-        from rockframe.studies.fragility.words import verdict_of_fragility
-        from rockframe.studies.sweeps.labelling import cases_verdict
+        from rockframe.studies.verdicts import verdict_of_study
 
-        if "fragility_status" in self._dataset:
-            return verdict_of_fragility(self._dataset)
-        if {"capacity_scale", "censored_count"} <= set(self._dataset):
-            return verdict_of_analysis(self._dataset)
-        return cases_verdict(self._dataset)
+        return verdict_of_study(self._dataset)
 
     @property
     def summary(self) -> str:

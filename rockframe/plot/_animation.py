@@ -1,6 +1,7 @@
 """Animations of runs: the scene, with the history of the rotation below."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Generator, Iterable
+from contextlib import contextmanager
 from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final, cast
@@ -25,6 +26,9 @@ from rockframe.writing import FileKind, checked_path, write_file
 
 if TYPE_CHECKING:
     from matplotlib.animation import FuncAnimation
+    from matplotlib.artist import Artist
+else:
+    Artist = Any
 
 
 _MAX_FRAMES: Final = 200
@@ -50,6 +54,50 @@ def check_film_program(ending: str, path: str | Path) -> None:
         raise FileError(str(path), reason)
 
 
+class _FilmedFigure:
+    """A figure for the writers of films; all but the artists that move is drawn once."""
+
+    def __init__(self, figure: Figure, draw: Callable[[int], Iterable[Artist]]) -> None:
+        from matplotlib.backends.backend_agg import FigureCanvasAgg
+
+        self.figure, self.number, self._draw, self._still = figure, 0, draw, None
+        self._canvas = FigureCanvasAgg(figure)
+
+    @classmethod
+    @contextmanager
+    def of(
+        cls, figure: Figure, draw: Callable[[int], Iterable[Artist]], pixels: float
+    ) -> "Generator[_FilmedFigure]":
+        """Draw a figure on a canvas of pixels, and return it to its own canvas."""
+        canvas, size, dpi = figure.canvas, tuple(figure.get_size_inches()), figure.dpi
+        try:
+            filmed = cls(figure, draw)
+            figure.dpi = pixels
+            yield filmed
+        finally:
+            for artist in draw(0):
+                artist.set_animated(False)
+            figure.set_size_inches(size, forward=False)
+            figure.set_dpi(dpi)
+            figure.set_canvas(canvas)
+
+    def savefig(self, file: Any, **_: Any) -> None:
+        """Write a frame as a writer expects it."""
+        moving = sorted(self._draw(self.number), key=lambda artist: artist.get_zorder())
+        if self._still is None:  # a writer has set the size
+            for artist in moving:
+                artist.set_animated(True)
+            self._canvas.draw()
+            self._still = self._canvas.copy_from_bbox(self.figure.bbox)
+        self._canvas.restore_region(self._still)
+        for artist in moving:
+            cast("Any", artist.axes).draw_artist(artist)
+        file.write(self._canvas.buffer_rgba())
+
+    def __getattr__(self, name: str) -> Any:
+        return getattr(self.figure, name)
+
+
 @suggests_names
 class Animation:
     """A run as an animation.
@@ -62,7 +110,7 @@ class Animation:
     panels : Panels
         The panels of the figure.
     draw : callable
-        Draws a frame by its number.
+        Draws a frame by its number, and returns the artists that move.
     rate : float
         Frames per second.
     times : ndarray, shape (frames,)
@@ -86,7 +134,7 @@ class Animation:
     def __init__(
         self,
         panels: Panels,
-        draw: Callable[[int], object],
+        draw: Callable[[int], Iterable[Artist]],
         rate: float,
         times: np.ndarray,
         player: Callable[[], Player],
@@ -136,16 +184,21 @@ class Animation:
         check_film_program(ending, path)
 
         def write(part: Path) -> None:
+            writer: Any = PillowWriter(cast("Any", self._rate))
             if ending == ".mp4":
                 note = {"comment": _STAMP.decode()}
-                writer: Any = FFMpegWriter(fps=cast("Any", self._rate), metadata=note)
+                writer = FFMpegWriter(fps=cast("Any", self._rate), metadata=note)
                 # the height and the width of a film are even
                 writer.extra_args = ["-vf", "pad=ceil(iw/2)*2:ceil(ih/2)*2", "-f", "mp4"]
-                self._film().save(part, writer=writer, dpi=pixels)
-                return
-            self._film().save(part, writer=PillowWriter(cast("Any", self._rate)), dpi=pixels)
-            drawn = part.read_bytes()
-            part.write_bytes(drawn.removesuffix(_TRAILER) + _COMMENT + _TRAILER)
+            with (
+                _FilmedFigure.of(self.figure, self._draw, pixels) as filmed,
+                writer.saving(filmed, part, pixels),
+            ):
+                for filmed.number in range(self.times.size):
+                    writer.grab_frame()
+            if ending != ".mp4":
+                drawn = part.read_bytes()
+                part.write_bytes(drawn.removesuffix(_TRAILER) + _COMMENT + _TRAILER)
 
         return write_file(path, FILM_KIND, write, overwrite=overwrite)
 
@@ -171,7 +224,7 @@ class Animation:
     def _film(self) -> "FuncAnimation":
         from matplotlib.animation import FuncAnimation
 
-        draw = cast("Any", self._draw)  # it returns artists only where these are blitted
+        draw = cast("Any", self._draw)
         return FuncAnimation(self.figure, draw, self.times.size, interval=1e3 / self._rate)
 
     def _repr_html_(self) -> str:
@@ -248,7 +301,8 @@ def animation(
     above, trace, *strips = sheet.panels
     response(shown_run.dataset, panels=("rotation", "contact"), rotation=rotation_unit, units=units,
              ax=[trace, *strips])  # fmt: skip
-    trace.tick_params(labelbottom=False)
+    for axes in (trace, *strips)[:-1]:
+        axes.tick_params(labelbottom=False)
     artist = SceneArtist(above, history.builder, length=axis_units.axis_unit(LENGTH))
     for_limits = samples[np.linspace(0, count - 1, min(count, _SAMPLES_FOR_LIMITS)).astype(int)]
     artist.set_points(history.points)
@@ -262,7 +316,11 @@ def animation(
     (dot,) = trace.plot([], [], "o", color=BLUE, markersize=6.0, zorder=5)
     clock = above.set_title("", fontsize="medium")
 
-    def draw(number: int) -> None:
+    # drawn over what moves
+    over = [spine for axes in sheet.panels for spine in axes.spines.values()]
+    over += filter(None, [trace.get_legend()])
+
+    def draw(number: int) -> list[Artist]:
         sample = int(samples[number])
         artist.draw(history.placement_at(sample))
         instant = float(shown_run.time[sample])
@@ -272,6 +330,7 @@ def animation(
         in_contact = any(history.placement_at(sample).bearing())
         dot.set_color(BLUE if in_contact else CONTACT_COLOUR)
         clock.set_text(history.caption(sample))
+        return [*artist.moving, *cursors, dot, clock, *over]
 
     draw(0)
     sheet.set_title(verdict_of_case(run, axis_units.reader), title)

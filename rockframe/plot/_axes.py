@@ -6,7 +6,7 @@ legible on white and on black. Text and axes have the colours of matplotlib's st
 """
 
 import re
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, Final
 
@@ -44,7 +44,7 @@ GREY: Final = "0.5"
 """Colour of the background of a figure's data, legible on white and on black."""
 
 
-_LETTER_WIDTH, _LINE_HEIGHT, _HANDLE_WIDTH = 0.07, 0.19, 0.55
+_LETTER_WIDTH, LINE_HEIGHT, _HANDLE_WIDTH = 0.07, 0.19, 0.55
 """Sizes of a legend in small letters: width of a letter, height of a line, and width of the handle
 before the words [in]."""
 
@@ -72,8 +72,11 @@ def add_legend(axes: "Axes", entries: tuple[Any, Any] | None = None, **style: An
     ]
     entry = _HANDLE_WIDTH + _LETTER_WIDTH * max(map(len, words))
     columns = int(np.clip((0.95 * width) // entry, 1, max(1, len(words))))
+    handles, words = fitting_entries(
+        handles, words, columns * int((0.95 * height - 0.1) / LINE_HEIGHT)
+    )
     rows = -(-len(words) // columns) + bool(title)
-    legend_share = min(0.6, (0.08 + _LINE_HEIGHT * rows) / height)
+    legend_share = min(0.6, (0.08 + LINE_HEIGHT * rows) / height)
     linear = axes.get_yscale() == "linear"
     low, top = axes.get_ylim()
     # data beyond the end of the axis stay outside
@@ -87,6 +90,19 @@ def add_legend(axes: "Axes", entries: tuple[Any, Any] | None = None, **style: An
         frameon=True, edgecolor="none", borderaxespad=0.2, handlelength=1.8, columnspacing=1.2,
         **style,
     )  # fmt: skip
+
+
+def fitting_entries(
+    handles: Sequence[Any], words: Sequence[str], most: int
+) -> tuple[list[Any], list[str]]:
+    """Return the entries of a legend; of more than fit the first ones and the number of others."""
+    if len(words) <= most:
+        return list(handles), list(words)
+    from matplotlib.lines import Line2D
+
+    shown = max(most - 1, 1)
+    others = f"and {len(words) - shown} more"
+    return [*handles[:shown], Line2D([], [], linestyle="none")], [*words[:shown], others]
 
 
 def split_common_parts(words: list[str]) -> tuple[str, list[str]]:

@@ -39,6 +39,7 @@ class DatasetKind:
     call: str  # the call that gives it
     identifying: tuple[str, ...]  # variables by which it is recognised
     required: tuple[str, ...] = ()  # further variables that are drawn
+    along: tuple[str, ...] = ()  # dimensions along which they are drawn
 
     @property
     def description(self) -> str:
@@ -100,14 +101,14 @@ _UNITS_DOC: Final = (
 
 def draws(
     data: str | DatasetKind, call: str = "", known: tuple[str, ...] = (),
-    needed: tuple[str, ...] = (), *, ax: str = "Axes", title: str = "",
+    needed: tuple[str, ...] = (), *, along: tuple[str, ...] = (), ax: str = "Axes", title: str = "",
 ) -> Callable[[FigureFunction], FigureFunction]:  # fmt: skip
     """Register what a figure is drawn from, for a dataset by a `DatasetKind`.
 
     Add to the docstring the arguments that figures share, what is returned, and errors. The words
     `ax` and `title` describe the Axes and the default title in the manual.
     """
-    kind = data if isinstance(data, DatasetKind) else DatasetKind(data, call, known, needed)
+    kind = data if isinstance(data, DatasetKind) else DatasetKind(data, call, known, needed, along)
     default_title = f"; {title} unless given" if title else ""
     in_figure = "" if ax == "Axes" else " A figure or subfigure gets new panels."
     shared = {
@@ -221,6 +222,10 @@ def _checked_kind(value: object, function: str, kind: DatasetKind) -> xr.Dataset
     missing = ", ".join(repr(name) for name in needed if name not in value.variables)
     if missing:
         raise _mismatch_error(function, f"one that lacks {missing}; give it the whole dataset")
+    for dim in kind.along:
+        if not value.sizes.get(dim):
+            what = f"one without values along {dim!r}; to draw a single one, pick it with a list"
+            raise _mismatch_error(function, f"{what}, for example dataset.isel({dim}=[0])")
     return value
 
 

@@ -32,6 +32,7 @@ from rockframe.plot._panels import (
 )
 from rockframe.studies.dynamic_analysis import verdict_of_analysis
 from rockframe.studies.fragility.trials import at_scales
+from rockframe.studies.hazard import verdict_of_rates
 from rockframe.units.display import UnitsLike, with_superscripts
 
 _PANELS: Final = {"peaks": 1.4, "shares": 1.0}
@@ -66,6 +67,7 @@ def _single_structure(dataset: xr.Dataset, variable: str, function: str, named: 
     "a dynamic analysis",
     "rf.incremental_dynamic_analysis(system, motions)",
     ("capacity_scale", "flip_count", "peak_relative_rotation", "scale"),
+    along=("limit_state", "motion", "scale"),
     ax="Axes, one for each panel",
     title="the verdict",
 )
@@ -157,7 +159,8 @@ def _draw_peaks(
         words = "motions" if number == 0 else None
         if not several:
             words = as_label(str(curve["motion"].item()))
-        axes.plot(line[1], line[0], color=colour, lw=0.7, label=words)
+        dashes = line_style(0 if several else number)
+        axes.plot(line[1], line[0], color=colour, ls=dashes, lw=0.7, label=words)
         for some, face in ((places[:1], colour), (places[1:], "none")):
             axes.plot(np.full(len(some), PEAK_CAP), some, "o", mfc=face, color=colour, ms=3)
         lines.append(line)
@@ -186,8 +189,9 @@ def _draw_shares(axes: Axes, dataset: xr.Dataset, intensity: xr.DataArray) -> No
         ordered = np.sort(np.array([0.0, *places]))
         shares = np.arange(len(ordered)) / max(1, len(capacity))
         axes.step(
-            shares, ordered, where="pre", color=line_colour(number), label=as_label(str(state))
-        )
+            shares, ordered, where="pre", color=line_colour(number), ls=line_style(number),
+            label=as_label(str(state)),
+        )  # fmt: skip
     axes.set(xlabel="share of the motions [-]", xlim=(0.0, 1.02))
 
 
@@ -216,6 +220,7 @@ def _peak_fractiles(lines: list[tuple[Any, Any]], up: Any) -> list[tuple[float, 
     "fractile curves",
     "rf.fractile_curves(runs)",
     ("response_fractile", "intensity_fractile", "motion_response"),
+    along=("motion", "quantile", "response_level"),
     title="the verdict",
 )
 def fractile_curves(
@@ -278,6 +283,7 @@ def fractile_curves(
     "a cloud",
     "rf.cloud_analysis(runs)",
     ("cloud_response", "residual_dispersion", "fragility_status"),
+    along=("run",),
     title="the verdict",
 )
 def cloud(
@@ -327,8 +333,9 @@ def cloud(
         for size in (1.0, 2.0):
             ends = (np.exp(log_median + sign * size * spread) for sign in (-1.0, 1.0))
             axes.fill_between(x, *ends, color=COLOURS[0], alpha=0.12, linewidth=0.0)
-    for limit in limits:
-        axes.axhline(limit, color="0.3", lw=0.8, ls=":")
+    for number, limit in enumerate(limits):
+        words = None if number else "limits"
+        axes.axhline(limit, color=text_colour(), lw=0.8, ls=":", label=words)
     response_name = data["cloud_response"].rename(str(data.attrs["response"]))
     axes.set(
         xscale="log", yscale="log", ylim=(low / 1.3, high * 1.3),
@@ -342,6 +349,7 @@ def cloud(
     "annual rates",
     "rf.annual_rate(fragility, hazard)",
     ("annual_rate", "rate_share"),
+    along=("contributing_intensity",),
     title="the verdict",
 )
 def annual_rate(
@@ -378,9 +386,11 @@ def annual_rate(
         rate = float(rates["annual_rate"])
         if np.isnan(rate):
             continue
+        shares, colour = 100.0 * rates["rate_share"].to_numpy(), line_colour(number)
+        axes.stairs(shares, edges, color=colour, fill=True, alpha=0.25)
         axes.stairs(
-            100.0 * rates["rate_share"].to_numpy(), edges, color=line_colour(number), lw=1.4,
-            fill=True, alpha=0.35, label=f"{limit_state_label(rates)}: {rate:.3g} a year",
+            shares, edges, color=colour, lw=1.4, ls=line_style(number),
+            label=f"{limit_state_label(rates)}: {rate:.3g} a year",
         )  # fmt: skip
     axes.set(
         xscale="log", ylabel="share of the rate [%]",
@@ -388,4 +398,4 @@ def annual_rate(
     )  # fmt: skip
     axes.set_ylim(bottom=0.0)
     label_log_ticks(axes)
-    return sheet.finish(with_superscripts(str(data.attrs["verdict"])), title)
+    return sheet.finish(with_superscripts(verdict_of_rates(data)), title)

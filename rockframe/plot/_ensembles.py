@@ -14,6 +14,7 @@ from rockframe.plot._axes import (
     limit_state_label,
     line_colour,
     line_style,
+    text_colour,
     unique_labels,
     value_label,
     variable_label,
@@ -27,7 +28,12 @@ from rockframe.studies.sweeps.labelling import cases_verdict
 from rockframe.units.display import UnitsLike, with_superscripts
 
 
-@draws("an ensemble", "rf.ensemble_statistics(runs)", ("ordered_value", "cumulative_probability"))
+@draws(
+    "an ensemble",
+    "rf.ensemble_statistics(runs)",
+    ("ordered_value", "cumulative_probability"),
+    along=("rank",),
+)
 def ensemble(
     dataset: xr.Dataset, *, units: UnitsLike = None, ax: AxesLike = None, title: str | None = None
 ) -> Axes:
@@ -67,6 +73,7 @@ def ensemble(
     "a sample",
     "rf.probability_of_overturning(system, motions, ...)",
     ("overturning_probability", "first_order_index"),
+    along=("case", "parameter"),
     ax="two Axes",
     title="the verdict",
 )
@@ -140,6 +147,7 @@ def _shares(verdicts: Any, groups: Any, count: int) -> Any:
     "a subset simulation",
     "rf.subset_simulation(system, motions, ...)",
     ("demand", "sample_weight", "demand_threshold"),
+    along=("case", "sampling_level"),
     title="the verdict",
 )
 def subset_simulation(
@@ -179,7 +187,7 @@ def subset_simulation(
         )
     for threshold in data["demand_threshold"].to_numpy():
         if np.isfinite(threshold):
-            axes.axvline(threshold, color="0.3", lw=0.8, ls=":")
+            axes.axvline(threshold, color=text_colour(), lw=0.8, ls=":")
     limit = float(data["demand_threshold"][-1])
     largest = float(demand[finite].max(initial=0.0)) or 1.0
     plotted_at = limit if np.isfinite(limit) else 1.08 * largest
@@ -188,10 +196,10 @@ def subset_simulation(
     if probability > 0.0:
         errors = np.abs(bounds - probability)[:, None]
         axes.errorbar(
-            plotted_at, probability, yerr=errors, fmt="D", ms=5.0, capsize=3.0, color="0.1"
+            plotted_at, probability, yerr=errors, fmt="D", ms=5.0, capsize=3.0, color=text_colour()
         )
     else:
-        axes.plot(plotted_at, bounds[1], "v", ms=6.0, color="0.1")
+        axes.plot(plotted_at, bounds[1], "v", ms=6.0, color=text_colour())
     axes.set(
         yscale="log", xlabel="response over its limit [-]", xlim=(0.0, None),
         ylabel="probability of reaching it [-]",
@@ -308,7 +316,7 @@ def _labelled_structures(state: xr.Dataset, structures: list[str]) -> list[tuple
 
 def _draw_curves(axes: Axes, named: list[tuple[str, xr.Dataset]], measure: str) -> None:
     for number, (name, curve) in enumerate(named):
-        colour, dashes = line_colour(number), line_style(number // len(COLOURS))
+        colour, dashes = line_colour(number), line_style(number)
         along = curve[measure].to_numpy()
         if int(curve["fragility_status"]) in _FITTED_STATUSES:
             axes.fill_between(

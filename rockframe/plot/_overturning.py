@@ -36,6 +36,7 @@ MAP_COLOURS: Final = (PALE_BLUE, VERMILLION, BLUE, SKY, PURPLE, GREEN)
     "a map",
     "rf.overturning_map(system, pulse, ...)",
     ("impacts_before_overturning", "amplitude_above", "amplitude"),
+    along=("amplitude", "frequency"),
 )
 def overturning_map(
     dataset: xr.Dataset, *, units: UnitsLike = None, ax: AxesLike = None, title: str | None = None
@@ -93,7 +94,7 @@ def overturning_map(
     if not decided.all():
         words.append("no verdict")
         patches.append(Patch(facecolor="none", edgecolor="0.6", label=words[-1]))
-    sheet.add_legend(patches, words, columns=2)
+    sheet.add_legend(patches, words, columns=2, fontsize="small")
     sheet.set_title("Overturning; dots are boundaries found by bisection", title)
     return axes
 
@@ -102,6 +103,7 @@ def overturning_map(
     "a spectrum",
     "rf.rocking_spectrum(system, motions, ...)",
     ("peak_relative_rotation", "rocking_period"),
+    along=("rocking_period",),
     ax="Axes, one for each slenderness",
 )
 def rocking_spectrum(
@@ -125,7 +127,7 @@ def rocking_spectrum(
     for axes in sheet.panels:
         axes.axhline(PEAK_CAP, color="0.5", lw=0.8, ls=":")
     sheet.axes.set_ylabel(r"peak of $|\alpha|/\theta$ [-]")
-    if data.sizes["motion"] <= _MAX_NAMED:
+    if data.sizes.get("motion", 1) <= _MAX_NAMED:
         sheet.add_common_legend()
     sheet.set_title("Rocking spectrum", title)
     return sheet.panels
@@ -135,6 +137,7 @@ def rocking_spectrum(
     "a spectrum",
     "rf.overturning_spectrum(system, ...)",
     ("capacity_intensity", "rocking_period"),
+    along=("rocking_period",),
     ax="Axes, one for each slenderness",
 )
 def overturning_spectrum(
@@ -158,7 +161,7 @@ def overturning_spectrum(
     measure = data["capacity_intensity"].rename(str(data.attrs["intensity"]))
     sheet = _draw_by_slenderness(ax, "overturning_spectrum", measure, yscale="log")
     sheet.axes.set_ylabel(intensity_label(measure, data))
-    if data.sizes["motion"] <= _MAX_NAMED:
+    if data.sizes.get("motion", 1) <= _MAX_NAMED:
         sheet.add_common_legend()
     sheet.set_title("Least intensity that overturns", title)
     return sheet.panels
@@ -173,6 +176,10 @@ def _impact_label(count: int, counted: int) -> str:
 def _draw_by_slenderness(ax: AxesLike, function: str, values: xr.DataArray, **style: Any) -> Sheet:
     """Draw a line for each motion over the size of the block, in a panel for each slenderness."""
     from matplotlib import colormaps
+
+    values = values.expand_dims(
+        [dim for dim in ("slenderness", "motion") if dim not in values.dims]
+    )
 
     names = [f"H/B = {float(value):.3g}" for value in values["slenderness"]]
     sheet = make_sheet(

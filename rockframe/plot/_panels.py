@@ -10,7 +10,7 @@ import numpy as np
 
 from rockframe.arguments import checked_text
 from rockframe.errors import ComponentError, did_you_mean, short_repr
-from rockframe.plot._axes import add_legend, escape_mathtext, grid
+from rockframe.plot._axes import LINE_HEIGHT, add_legend, escape_mathtext, fitting_entries, grid
 from rockframe.plot._fonts import add_fallback_fonts
 from rockframe.suggestions import suggests_names
 
@@ -66,6 +66,8 @@ def _broken_lines(words: str, width: int) -> list[str]:
 
 
 _HANDLE_LETTERS: Final = 7
+_MAX_LEGEND_SHARE: Final = 0.4
+"""Largest share of the height of a figure for the legend below it."""
 
 
 @suggests_names
@@ -116,6 +118,9 @@ class Sheet:
         """Write the title above a new figure; above given panels only if the caller set one."""
         if title is not None:
             checked_text(title, owner="rf.plot", name="title")
+        for axes in self.panels:
+            for axis in (axes.xaxis, axes.yaxis):
+                axis.label.set_wrap(True)
         if self.own_figure is not None:
             set_figure_title(self.own_figure, title or escape_mathtext(default))
         elif title:
@@ -129,10 +134,14 @@ class Sheet:
         if self.own_figure is None or not labels:
             add_legend(self.panels[-1], (handles, labels))
             return
-        width = _LETTERS_PER_INCH * self.own_figure.bbox.width / self.panels.figure.get_dpi()
-        fitting = int(width // (_HANDLE_LETTERS + max(map(len, labels))))
-        style |= {"ncols": max(1, min(len(labels), columns, fitting))}
-        self.own_figure.legend(handles, labels, loc="outside lower center", frameon=False, **style)
+        width, height = np.divide(self.own_figure.bbox.size, self.panels.figure.get_dpi())
+        letters = width * _LETTERS_PER_INCH * (1.2 if style.get("fontsize") == "small" else 1.0)
+        fitting = int(letters // (_HANDLE_LETTERS + max(map(len, labels))))
+        columns = max(1, min(len(labels), columns, fitting))
+        rows = int(_MAX_LEGEND_SHARE * height / LINE_HEIGHT)
+        entries = fitting_entries(handles, labels, rows * columns)
+        style |= {"loc": "outside lower center", "frameon": False, "ncols": columns}
+        self.own_figure.legend(*entries, **style)
 
     def finish(self, default: str, title: str | None) -> "Axes":
         """Draw the grid, the legend of all panels and the title; return the first panel."""

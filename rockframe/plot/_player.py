@@ -15,9 +15,10 @@ import xarray as xr
 
 from rockframe.arguments import checked_text
 from rockframe.motion.display import motion_words
-from rockframe.plot._artists import CONTACT_COLOUR, SOIL_COLOUR, Layout
+from rockframe.plot._artists import CONTACT_COLOUR, SOIL_COLOUR
 from rockframe.plot._axes import BLUE, GREEN, ORANGE, VERMILLION, figure_units
 from rockframe.plot._checks import RUN, checked_run, draws
+from rockframe.plot._layout import Layout
 from rockframe.plot._response import (
     BODY_SLIP,
     CAP_SLIP,
@@ -284,17 +285,20 @@ def _part_layers(history: SceneHistory, layouts: Sequence[Layout]) -> Iterator[_
         yield _Layer("soil", "ground", SOIL_COLOUR, 0.35, moving(_surface_corners))
     for outline in upright.bodies:
         yield _Layer("at rest", "dashes", "soft", 0.0, still(outline))
-    for wall in history.geometry.walls:
+    for wall in upright.walls:
         yield _Layer("wall", "outline", "soft", 0.35, still(wall))
     if first.cap is not None:
         yield _Layer("cap", "outline", ORANGE, 0.3, moving(lambda layout: layout.cap))
     yield from each("lower_bodies", "outline", ORANGE, 0.25)
+    yield from each("beds", "outline", SOIL_COLOUR, 0.5)
     yield from each("pads", "outline", "soft", 0.7)
     yield from each("frame_parts", "outline", BLUE, 0.25)
     fill = 0.08 if first.members else 0.25
     yield _Layer("block", "outline", BLUE, fill, moving(lambda layout: layout.block))
     yield from each("members", "outline", BLUE, 0.3)
     yield from each("restrainers", "line", VERMILLION, 0.0)
+    for k in range(len(first.loads)):
+        yield _Layer("load", "point", GREEN, 1.0, moving(lambda layout, k=k: layout.loads[[k]]))
     yield _Layer("centre of mass", "cross", "ink", 1.0, moving(lambda layout: layout.centres))
     for contacts in zip(*(layout.contacts for layout in layouts), strict=True):
         ends = np.array([contact[[0, -1]] for contact in contacts])  # a point's coincide

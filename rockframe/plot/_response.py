@@ -27,6 +27,7 @@ from rockframe.plot._axes import (
     axis_label,
     figure_units,
     line_colour,
+    line_style,
     text_colour,
     zero_line,
 )
@@ -50,6 +51,10 @@ _COLOUR_COLUMNS: Final = 1 << 14
 """More than the pixels of a figure: the colours within a pixel are then averaged well."""
 
 
+_LEGEND_DISTANCE: Final = 0.5
+"""Distance of the legend from the strip above it [in]."""
+
+
 def draw_contact(axes: Axes, state: xr.DataArray, name: str) -> None:
     """Draw the contact state as a strip of colours.
 
@@ -69,9 +74,10 @@ def draw_contact_legend(axes: Axes, state: xr.DataArray) -> None:
     from matplotlib.patches import Patch
 
     names = flag_words(state.attrs).values()
+    height = axes.get_window_extent().height / axes.figure.dpi
     axes.legend(
         handles=[Patch(facecolor=CONTACT_COLOURS[name], label=name) for name in names],
-        loc="upper center", bbox_to_anchor=(0.5, -1.6), ncols=len(names),
+        loc="upper center", bbox_to_anchor=(0.5, -_LEGEND_DISTANCE / height), ncols=len(names),
         fontsize="small", frameon=False,
     )  # fmt: skip
 
@@ -367,7 +373,8 @@ def _draw_history(axes: Axes, runs: list[Run], name: str, units: DisplayUnits) -
             part = as_label(str(row[first].item()), _MAX_NAME_LENGTH) if first in row.coords else ""
             label = ", ".join(filter(None, (run.label, part))) or None
             colour = run.colour if len(rows) == 1 else line_colour(number)
-            axes.plot(run.time, unit.of(row), color=colour, linestyle=run.style, linewidth=0.9,
+            style = run.style if len(runs) > 1 else line_style(number)
+            axes.plot(run.time, unit.of(row), color=colour, linestyle=style, linewidth=0.9,
                       label=label)  # fmt: skip
     if name == SLIP and len(runs) == 1 and CAP_SLIP in runs[0].dataset:
         axes.lines[-1].set_label("block")

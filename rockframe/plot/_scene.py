@@ -9,7 +9,7 @@ import xarray as xr
 from rockframe.arguments import checked_bool
 from rockframe.dynamics.events import LinkState
 from rockframe.errors import ComponentError, SchemaError, short_repr
-from rockframe.plot._artists import LayoutBuilder, SceneArtist, part_labels
+from rockframe.plot._artists import SceneArtist, part_labels
 from rockframe.plot._axes import FigureUnits, figure_units
 from rockframe.plot._checks import (
     RUN,
@@ -19,6 +19,7 @@ from rockframe.plot._checks import (
     read_positive,
     system_of_run,
 )
+from rockframe.plot._layout import LayoutBuilder
 from rockframe.plot._panels import Axes, AxesLike, make_single_panel
 from rockframe.plot._response import BODY_CONTACT_STATE
 from rockframe.results.points import UPRIGHT, Placement
@@ -78,8 +79,8 @@ def scene(
     matplotlib.axes.Axes
         To scale, in metres or in the unit of lengths in `units`, with the middle of the lowest
         base at the origin. A block is always drawn as the rectangle of its width and height, and a
-        frame with its members. Pads, which have no thickness in the
-        equations, are drawn with one.
+        frame with its members. Pads, and beds between bodies, which
+        have no thickness in the equations, are drawn with one.
 
     Raises
     ------

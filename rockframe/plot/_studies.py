@@ -42,6 +42,7 @@ _PANELS: Final = ("histories", "residual")
     "a critical scale",
     "rf.critical_scale(system, motion)",
     ("critical_scale", "scale_above", "outcome", "peak_rotation"),
+    along=("scale",),
     title="the verdict",
 )
 def critical_scale(
@@ -300,7 +301,7 @@ def _draw_lines(
             label = text if named else f"{line_dim.replace('_', ' ')} {text}"
         axes.plot(
             places, line, marker="o", markersize=3.0, color=line_colour(number), linewidth=1.0,
-            linestyle=line_style(number // 6) if _is_numeric_axis(dataset, x_dim) else "none",
+            linestyle=line_style(number) if _is_numeric_axis(dataset, x_dim) else "none",
             label=label,
         )  # fmt: skip
         crossed = overturned.isel(selected).to_numpy()

@@ -32,6 +32,7 @@ _ERROR_LABEL: Final = "largest error of the rotation\nover its peak [-]"
     "rf.tradeoff(system, motion)",
     ("run_time", "verdict_agrees"),
     ("numerical_history_error", "history_error", "model", "accuracy"),
+    along=("accuracy", "model"),
     ax="two Axes",
     title="scene and motion",
 )
@@ -96,7 +97,7 @@ def tradeoff(
 
 def _draw_line(axes: Axes, x: Any, y: Any, row: xr.Dataset, colour: Any) -> None:
     axes.plot(x, y, "-", color=colour, lw=1.0)
-    face = "white" if _SMALL_ROTATIONS in str(row["model"].item()) else colour
+    face = axes.get_facecolor() if _SMALL_ROTATIONS in str(row["model"].item()) else colour
     agrees = row["verdict_agrees"].to_numpy()
     for k in range(len(x)):
         marker = _MARKERS[k % len(_MARKERS)]
@@ -127,6 +128,7 @@ def _mark_small_errors(axes: Axes, errors: Any) -> None:
 
 def _legend_handles(dataset: xr.Dataset, models: list[str]) -> "list[Line2D]":
     """Return the legend: the accuracies, hollow markers and crosses."""
+    from matplotlib import rcParams
     from matplotlib.lines import Line2D
 
     keys = [
@@ -134,6 +136,6 @@ def _legend_handles(dataset: xr.Dataset, models: list[str]) -> "list[Line2D]":
         for k, name in enumerate(dataset["accuracy"].to_numpy())
     ]
     if any(_SMALL_ROTATIONS in model for model in models):
-        style: Any = {"marker": "o", "color": GREY, "mfc": "white", "ls": "none"}
+        style: Any = {"marker": "o", "color": GREY, "ls": "none", "mfc": rcParams["axes.facecolor"]}
         keys.append(Line2D([], [], **style, label=f"hollow: {_SMALL_ROTATIONS}"))
     return [*keys, Line2D([], [], marker="x", color=GREY, ls="none", ms=10, label="other verdict")]

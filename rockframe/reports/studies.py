@@ -33,6 +33,7 @@ from rockframe.studies.sweeps.labelling import (
     cautions_of_result,
     slips_of_cases,
 )
+from rockframe.studies.verdicts import verdict_of_study
 from rockframe.units.display import DisplayUnits, with_superscripts
 
 
@@ -40,7 +41,7 @@ def verdict_sections(
     dataset: xr.Dataset, about: Project, units: DisplayUnits, by_codes: Sequence[str] = ()
 ) -> Iterator[str]:
     """Return the verdicts of the cases and of codes, the figure, and the numbers."""
-    sentence = cases_verdict(dataset)
+    sentence = verdict_of_study(dataset)
     verdict = [*about.conclusion_banner()]
     if sentence:
         verdict.append(_banner(dataset, units.convert_text(sentence)))

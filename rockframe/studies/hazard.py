@@ -408,6 +408,14 @@ def _warn_beyond_curve(dataset: xr.Dataset, curve: HazardCurve) -> None:
         )
 
 
+def verdict_of_rates(dataset: xr.Dataset) -> str:
+    """Say the annual rate; of a part of the rates, that of the part."""
+    whole = {"quantile_intensity", "outside_trials_share"} <= set(dataset)
+    if not whole or dataset.sizes.get("quantile") != len(_QUANTILES):
+        return str(dataset.attrs.get("verdict", ""))
+    return _sentence(dataset)
+
+
 def _sentence(dataset: xr.Dataset) -> str:
     """Return the verdict in words: rate of the last limit state, and contributing intensities."""
     last = dataset.isel(limit_state=-1) if "limit_state" in dataset.dims else dataset

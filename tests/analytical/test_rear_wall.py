@@ -9,7 +9,7 @@ import xarray as xr
 
 import rockframe as rf
 from rockframe.errors import AssemblyError, RockframeError
-from rockframe.plot._artists import LayoutBuilder
+from rockframe.plot._layout import LayoutBuilder
 from rockframe.simulation.certify.perturbations import parameters
 from rockframe.system.geometry import geometry_of
 

@@ -10,7 +10,7 @@ import xarray as xr
 import rockframe as rf
 from rockframe.command.files.scenes import read_scene
 from rockframe.errors import AssemblyError, ComponentError, ModelWarning
-from rockframe.plot._artists import LayoutBuilder
+from rockframe.plot._layout import LayoutBuilder
 from rockframe.plot._scene import SceneHistory
 from rockframe.reports.limits import model_limits
 from rockframe.results.points import UPRIGHT, Placement

@@ -20,9 +20,9 @@ bases = {
 }
 angles = np.linspace(0.0, 0.3, 150)
 figure, axes = plt.subplots(figsize=(6.4, 4.0), layout="constrained")
-for name, base in bases.items():
+for (name, base), dashes in zip(bases.items(), ("-", "--", "-.", ":"), strict=True):
     held = rf.System(tower, *base).moment_rotation((angles, "rad"))
-    axes.plot(np.degrees(held.angle), held.restoring_moment / 1e6, label=name)
+    axes.plot(np.degrees(held.angle), held.restoring_moment / 1e6, dashes, label=name)
 axes.axhline(0.0, color="0.7", lw=0.6)
 axes.set(xlabel="rotation [deg]", ylabel="restoring moment [MN m]")
 axes.legend(frameon=False)

@@ -55,7 +55,7 @@ print(f"With anchors of {worse} times its weight it falls where a free one stand
 figure, axes = plt.subplots(figsize=(6.4, 4.0), layout="constrained")
 x, y = np.meshgrid(strengths, levels)
 axes.scatter(x[falls], y[falls], marker="X", s=60, color="tab:red", label="falls")
-axes.scatter(x[~falls], y[~falls], marker="o", s=45, color="tab:green", label="stands")
+axes.scatter(x[~falls], y[~falls], marker="o", s=45, color="tab:blue", label="stands")
 axes.axhline(free_stands + 0.05, color="0.4", linestyle="--", label="a free one falls above")
 axes.set(xlabel="strength of each anchor over the weight", ylabel="peak of the floor [g]")
 axes.set_ylim(0.4, 1.5)

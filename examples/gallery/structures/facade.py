@@ -14,7 +14,7 @@ import rockframe as rf
 
 periods = np.linspace(0.4, 2.0, 15)
 figure, axes = plt.subplots(figsize=(6.6, 4.0), layout="constrained")
-for height in (4, 7, 10, 13):
+for height, marker in zip((4, 7, 10, 13), "osD^", strict=True):
     wall = rf.Block(width="0.6 m", height=f"{height} m", mass=f"{1.1 * height} t")
     found = rf.overturning_map(
         rf.System(wall),
@@ -27,7 +27,7 @@ for height in (4, 7, 10, 13):
         progress=False,
     )
     least = found.amplitude_above.min("boundary")
-    axes.plot(1.0 / found.frequency, least / 9.80665, "o-", ms=3, label=f"{height} m high")
+    axes.plot(1.0 / found.frequency, least / 9.80665, f"{marker}-", ms=4, label=f"{height} m high")
     print(f"{height:>2} m high: {float(least.min()) / 9.80665:.2f} g in a pulse of 2 s")
 axes.set(xlabel="period of the pulse [s]", ylabel="least peak that overturns [g]", ylim=(0.0, None))
 axes.legend(frameon=False)

@@ -31,7 +31,7 @@ SCENES = {
     "pads, cap and soil": [BLOCK, PADS, CAP, SOIL],
     "stack": [rf.Stack(BLOCK, PLINTH, interfaces=[rf.RigidGround()]), rf.RigidGround()],
     "wall": [BLOCK, rf.RearWall(side="left")],
-    "ties": [BLOCK, PADS, TIE],
+    "ties": [BLOCK, PADS, TIE, rf.Load(at=("-0.2 m", "3 m"), vertical="1 kN")],
 }
 
 
@@ -77,6 +77,11 @@ def test_player_coordinates_match_the_scene(scene):
         layout = moving.builder.layout_at(moving.placement_at(int(np.argmin(abs(times - time)))))
         np.testing.assert_allclose(block[place], layout.block, atol=0.51 * step)
         np.testing.assert_allclose(cross[place], layout.centres, atol=0.51 * step)
+    if scene == "ties":
+        load, _ = points_of(data, numbers, "load")
+        distances = [np.linalg.norm(load[:, 0] - block[:, k], axis=1) for k in (0, 1)]
+        np.testing.assert_allclose(distances[0], np.hypot(0.3, 3.0), atol=2 * step)
+        np.testing.assert_allclose(distances[1], np.hypot(0.7, 3.0), atol=2 * step)
     rest = [layer for layer in data["layers"]["list"] if layer["name"] == "at rest"]
     assert len(rest) == (2 if scene in ("stack", "pads, cap and soil") else 1)
     box = data["layers"]

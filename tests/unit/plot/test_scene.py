@@ -1,5 +1,6 @@
 """Scenes to scale: positions of corners, pads, soil and cap agree with closed forms."""
 
+from io import BytesIO
 from shutil import which
 
 import numpy as np
@@ -8,7 +9,8 @@ from matplotlib.patches import Polygon
 
 import rockframe as rf
 from rockframe.errors import ComponentError, FileError, SchemaError, UnitsError
-from rockframe.plot._artists import LayoutBuilder
+from rockframe.plot._animation import _FilmedFigure
+from rockframe.plot._layout import LayoutBuilder
 from rockframe.plot._runs import read_runs
 from rockframe.plot._scene import SceneHistory
 from rockframe.results.points import UPRIGHT, Placement
@@ -63,7 +65,7 @@ def test_drawn_points_match_point_displacements(parts):
     run = system.simulate(PULSE, free_vibration="1 s", points=point)
     moving = SceneHistory(run, "state", 1.0)
     below = 0.4 if len(parts) == 3 else 0.0  # points are measured from the base of the body
-    lift = moving.builder.pad_thickness if len(parts) == 3 else 0.0
+    lift = moving.builder.geometry.thickness(0) if len(parts) == 3 else 0.0
     for place in range(0, run.sizes["time"], 40):
         placement = moving.placement_at(place)
         (drawn_point,) = moving.builder.points_at(placement, np.array([(1.0, 7.0)]))
@@ -165,6 +167,51 @@ def test_stack_bodies_are_drawn_with_contact_centre_and_outline(soil):
     np.testing.assert_allclose(dashed, [rest.block, rest.lower_bodies[0]])
     labels = [axes.get_ylabel() for axes in rf.plot.response(run, panels=("contact",))]
     assert labels == ["body 1", "body 2"]
+
+
+def test_pads_and_beds_of_a_stack_fill_the_gaps_between_its_bodies():
+    middle, low = (rf.Block(width=f"{k} m", height="1 m", mass="9 t") for k in (2, 3))
+    bed = rf.WinklerSoil(stiffness="90 MPa", damping_ratio=0.1)
+    system = rf.System(rf.Stack(BLOCK, middle, low, interfaces=[PADS, bed], offsets=["5 cm"] * 2),
+                       PADS)  # fmt: skip
+    run = system.simulate(PULSE, duration="1 s")
+    moving = SceneHistory(run, "state", 3.0)
+    rest = moving.builder.layout_at(moving.upright)
+    thick = [moving.geometry.thickness(k, 3.0) for k in range(3)]
+    assert min(thick) > 0.04
+    levels = [body[0, 1] for body in (rest.block, *rest.lower_bodies)]
+    np.testing.assert_allclose(levels, [2.0 + thick[0] + thick[1], 1.0 + thick[1], 0.0])
+    assert rest.ground[0, 1] == -thick[2]
+    for layer, base in zip((*rest.pads, *rest.beds), (0, 0, 2, 2, 1), strict=True):
+        low_high = layer[:, 1].min(), layer[:, 1].max()
+        np.testing.assert_allclose(low_high, (levels[base] - thick[base], levels[base]))
+    np.testing.assert_allclose(rest.pads[0][0, 0], rest.block[0, 0])  # beneath its ends
+    np.testing.assert_allclose(rest.beds[0][:, 0].max(), rest.lower_bodies[0][1, 0])
+    rocked = int(np.argmax(np.abs(run.rotation.to_numpy())))
+    layout = moving.builder.layout_at(moving.placement_at(rocked))
+    states = run.body_contact_state.to_numpy()[:, rocked]
+    assert states[0] in (1, 2)
+    assert layout.pads_in_contact[:2] == (states[0] == 1, states[0] == 2)
+    free = layout.pads[1 if states[0] == 1 else 0]  # as thick as without a load
+    height = np.hypot(*(free[3] - free[0]))
+    np.testing.assert_allclose(height, thick[0] + 3.0 * moving.geometry.bases[0].settlement)
+    card = system._repr_html_()
+    assert card.count("<polygon") == 1 + 3 + 2 + 1 + 2
+
+
+def test_magnified_displacements_close_the_gap_of_a_wall():
+    wall = rf.RearWall(side="right", stiffness="50 MN/m", gap="2 cm")
+    run = rf.System(SLIM, PADS, wall).simulate(PULSE, free_vibration="1 s")
+    gaps = []
+    for factor in (1.0, 6.0):
+        moving = SceneHistory(run, "state", factor)
+        layouts = [moving.builder.layout_at(moving.placement_at(k)) for k in range(run.time.size)]
+        # from the corner that strikes to the wall
+        gaps.append([layout.walls[0][0, 0] - layout.block[2, 0] for layout in layouts])
+        assert layouts[0].walls[0][0, 1] == layouts[0].ground[0, 1]
+        np.testing.assert_array_equal(layouts[-1].restrainers[0][:, 0], layouts[0].walls[0][0, 0])
+    assert min(gaps[0]) < 1e-3  # the wall was struck
+    np.testing.assert_allclose(gaps[1], 6.0 * np.array(gaps[0]), atol=1e-12)
 
 
 def test_a_cap_that_moves_apart_has_its_centre():
@@ -269,6 +316,33 @@ def test_animation_frames_are_evenly_spaced_and_saved(tmp_path):
     assert rf.plot.animation(run, speed=2.0).times.size == 21
 
 
+def test_a_film_draws_once_what_does_not_move(tmp_path, monkeypatch):
+    from matplotlib.axis import Axis
+
+    run = rf.System(EVEN, PADS, CAP, SOIL).simulate(PULSE)
+    moving = rf.plot.animation(run, frames_per_second=5)
+    assert moving.panels[1].get_legend() is not None
+    canvas, size, dpi = moving.figure.canvas, moving.figure.get_size_inches(), moving.figure.dpi
+    with _FilmedFigure.of(moving.figure, moving._draw, 60.0) as filmed:
+        for filmed.number in range(moving.times.size):
+            frames = [BytesIO(), BytesIO()]
+            filmed.savefig(frames[0])
+            for artist in moving._draw(filmed.number):
+                artist.set_animated(False)
+            moving.figure.savefig(frames[1], dpi=60, format="rgba")
+            first, full = (np.frombuffer(one.getvalue(), np.uint8).astype(int) for one in frames)
+            assert np.abs(first - full).max() <= 1
+    drawn, draw = [], Axis.draw
+    monkeypatch.setattr(Axis, "draw", lambda *given: (drawn.append(1), draw(*given))[1])
+    moving.save(tmp_path / "run.gif", dpi=60)
+    panels = len(moving.panels)
+    assert len(drawn) == 2 * panels
+    assert (moving.figure.canvas, moving.figure.dpi) == (canvas, dpi)
+    np.testing.assert_array_equal(moving.figure.get_size_inches(), size)
+    artists = [artist for axes in moving.panels for artist in axes.get_children()]
+    assert not any(artist.get_animated() for artist in artists)
+
+
 def test_mp4_animation_requires_ffmpeg(tmp_path, monkeypatch):
     moving = rf.plot.animation(rf.System(EVEN, PADS).simulate(PULSE), frames_per_second=4)
     film = tmp_path / "run.mp4"
@@ -288,7 +362,8 @@ def test_a_tendon_goes_through_its_body():
     alone = rf.System(EVEN, PADS, tendon)
     upper = rf.Block(width="1 m", height="3 m", mass="5 t")
     stack = rf.System(rf.Stack(upper, EVEN, interfaces=[rf.RigidGround()]), PADS, tendon)
-    for system, ends in ((alone, [(0.3, 8.0), (0.3, -2.0)]), (stack, [(0.3, 11.0), (0.3, 6.0)])):
+    for system, ends in ((alone, [(0.3, 8.0), (0.3, 0.0), (0.3, -2.0)]),
+                         (stack, [(0.3, 11.0), (0.3, 8.0), (0.3, 6.0)])):  # fmt: skip
         assert geometry_of(system.assembly).links[0].points == pytest.approx(np.array(ends))
 
 
@@ -372,7 +447,6 @@ def test_scene_legend_lists_bases_loads_and_restrainers():
     assert "friction 0.3" in legend_words(SLIM, rf.RigidGround(friction=0.3))
     joint = rf.TwoSpringSupport(stiffness="20 MN/m", damping_ratio=0.1)
     words = legend_words(rf.Stack(SLIM, SLIM, interfaces=[rf.RigidGround(friction=0.4)]), joint)
-    assert "rigid ground" not in words
     for entry in (
         "body 2: Block",
         "on RigidGround, friction 0.4",
@@ -381,7 +455,9 @@ def test_scene_legend_lists_bases_loads_and_restrainers():
         assert entry in words
     drums = rf.Stack(*[SLIM] * 6, interfaces=rf.RigidGround(friction=0.4))
     tendons = [rf.Tendon(stiffness="1 MN/m", on_body=k, depth="1 m") for k in range(1, 7)]
-    legend_words(drums, rf.RigidGround(friction=0.4), *tendons)
+    words = legend_words(drums, rf.RigidGround(friction=0.4), *tendons, load)
+    assert "\nbodies 2 to 5: Block" in words
+    assert "\nload" in words
     in_units = legend_words(SLIM, units={"length": "cm", "mass": "kg"})
     assert "width 80 cm\n   height 400 cm\n   mass 2000 kg" in in_units
 

@@ -12,6 +12,7 @@ from rockframe.studies.sweeps.labelling import (
     merge_similar_texts,
     warn_of_missing_results,
 )
+from rockframe.units.display import with_superscripts
 
 BLOCK = rf.Block(width="0.5 m", height="2 m", mass="400 kg")
 PULSE = rf.GroundMotion.sine_pulse("3 m/s^2", "1 Hz")
@@ -133,6 +134,27 @@ def test_subset_of_a_fragility_has_its_own_verdict():
     assert "structures" not in one.rockframe.verdict
     assert one.isel(limit_state=0).rockframe.verdict.count("rotation 0.3") == 1
     assert found.verdict in found.rockframe.summary
+
+
+def test_figure_and_report_of_a_part_of_annual_rates_have_its_verdict(tmp_path):
+    motions = [rf.GroundMotion.stochastic(6.5, "10 km", seed=k).scaled(2) for k in range(4)]
+    runs = rf.sweep(rf.System(BLOCK), motions, scale=[1, 2, 3, 4], width=["0.5 m", "0.6 m"])
+    hazard = {"intensity": ([0.1, 1.0, 10.0, 100.0], "m/s^2"), "rate": [1.0, 1e-2, 1e-5, 1e-9]}
+    found = rf.fragility(runs, "PGA", limits=[0.3])
+    rates = rf.annual_rate(found, hazard)
+    assert rates.rockframe.verdict == rates.verdict
+    for part, alone in (
+        (rates.isel(width=0), found.isel(width=0)),
+        (rates.isel(width=[1]), found.isel(width=1)),
+        (rates.isel(width=1, limit_state=0), found.isel(width=1, limit_state=[0])),
+    ):
+        expected = rf.annual_rate(alone, hazard).verdict
+        assert part.rockframe.verdict == expected != rates.verdict
+        title = rf.plot.annual_rate(part).figure.get_suptitle()
+        assert " ".join(title.split()) == with_superscripts(expected)
+    assert with_superscripts(expected) in rf.report(part, tmp_path / "rates.html").read_text()
+    without = rates.isel(width=0, quantile=0)  # what the verdict states
+    assert without.rockframe.verdict == rates.verdict
 
 
 def test_tradeoff_verdict_equals_the_recommendation():
