@@ -49,6 +49,7 @@ from rockframe.solve.workspace import (
     ground_in_step,
     is_full,
     load_interval,
+    steps_made,
     with_ends_swapped,
 )
 
@@ -344,8 +345,8 @@ def run_to_pause(
             status = at.PAUSED
             break
         if reason == EXHAUSTED:
-            made = counters[at.STEPS] + counters[at.REJECTED]
-            status = at.STEP_LIMIT if made >= counters[at.MAX_STEPS] else at.PAUSED
+            ended = steps_made(counters) >= counters[at.MAX_STEPS]
+            status = at.STEP_LIMIT if ended else at.PAUSED
         elif reason == TOO_SMALL:
             status = at.STEP_TOO_SMALL
         if reason in (AT_END, EXHAUSTED, TOO_SMALL):

@@ -61,6 +61,7 @@ from rockframe.solve.workspace import (
     StepTable,
     Workspace,
     is_full,
+    steps_made,
 )
 
 INITIAL_SCALE: Final = 1e-6
@@ -206,12 +207,12 @@ def _steps_to_pause(equations: BoundEquations) -> int:
 def pausing_in_python(counters: Integers) -> Generator[None]:
     """Let the run in this block pause after some time if it calls functions in plain Python.
 
-    One event of many bodies may take as long there as thousands of steps.
+    One event of many bodies may take as long there as thousands of steps. It makes at least a step.
     """
-    until = perf_counter() + SECONDS_CALLING_BACK
+    until, made = perf_counter() + SECONDS_CALLING_BACK, steps_made(counters)
 
     def pause_when_due() -> None:
-        if perf_counter() >= until:
+        if perf_counter() >= until and steps_made(counters) > made:
             counters[at.PAUSE_AT] = 0
 
     with after_each_call(pause_when_due):
@@ -344,8 +345,8 @@ def integrate(
     progress = Progress(run.controls, clock, counters)
     python_time = PythonTime(duration, interval, 1.0 if exact else WITH_HISTORIES_AND_CHECK)
     while True:
-        made = counters[at.STEPS] + counters[at.REJECTED]
-        counters[at.PAUSE_AT] = min(made + _steps_to_pause(equations), counters[at.MAX_STEPS])
+        pause_at = steps_made(counters) + _steps_to_pause(equations)
+        counters[at.PAUSE_AT] = min(pause_at, counters[at.MAX_STEPS])
         with python_time.measured(equations, clock), pausing_in_python(counters):
             result = advance(
                 equations, run.tolerance, memory, pieces, progress,

@@ -40,6 +40,7 @@ from rockframe.solve.workspace import (
     ground_may_peak,
     is_full,
     load_interval,
+    steps_made,
 )
 
 DIP_MARGIN: Final = 0.02
@@ -217,8 +218,7 @@ def march(
                 result = GROUND_JUMPED
                 break
             continue
-        made = counters[at.STEPS] + counters[at.REJECTED]
-        if made >= counters[at.PAUSE_AT] and trial == 0.0:
+        if steps_made(counters) >= counters[at.PAUSE_AT] and trial == 0.0:
             result = EXHAUSTED
             break
         requested = fit_step(min(h_next, controls[at.MAX_STEP]), remaining)

@@ -247,6 +247,12 @@ def append_row(
 
 
 @inlined
+def steps_made(counters: Integers) -> int:
+    """Return the number of steps of a run, refused ones included."""
+    return counters[STEPS] + counters[REJECTED]
+
+
+@inlined
 def is_full(codes: Integers, counters: Integers) -> bool:
     """Whether a table of steps, if one is kept, has no room for a start and a step from it."""
     return ROW_CODES * (counters[STEPS_KEPT] + 2) > len(codes) > 0

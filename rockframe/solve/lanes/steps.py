@@ -56,7 +56,7 @@ from rockframe.solve.schemes import (
     write_stage_rates,
     write_works,
 )
-from rockframe.solve.workspace import ground_may_peak
+from rockframe.solve.workspace import ground_may_peak, steps_made
 
 
 @inlined
@@ -109,7 +109,7 @@ def leave_ground_peaks(
 def has_reached_step_limit(data: Vector, lane: int) -> bool:
     """Whether a lane has made all the steps that its run may make."""
     counters = lane_of(as_integers(data), fields.COUNTERS, lane)
-    return counters[at.STEPS] + counters[at.REJECTED] >= counters[at.MAX_STEPS]
+    return steps_made(counters) >= counters[at.MAX_STEPS]
 
 
 @inlined
