@@ -28,6 +28,7 @@ from rockframe.compiled.language import Matrix as Matrix
 from rockframe.compiled.language import ReadOnlyMatrix as ReadOnlyMatrix
 from rockframe.compiled.language import Vector as Vector
 from rockframe.compiled.language import as_integers as as_integers
+from rockframe.compiled.language import call_of_either as call_of_either
 from rockframe.compiled.language import constant as constant
 from rockframe.compiled.language import filled as filled
 from rockframe.compiled.language import inlined as inlined

@@ -63,21 +63,6 @@ def buffer_of(_: Any, array: Any) -> Any:
 
 
 @extending.intrinsic
-def _shifted(_: Any, buffer: Any, first: Any) -> Any:
-    """Return a buffer from an index on, in compiled code."""
-
-    def code(context: Any, builder: Any, signature: Any, values: Any) -> Any:
-        proxy = cgutils.create_struct_proxy(buffer)(context, builder, value=values[0])
-        result = cgutils.create_struct_proxy(buffer)(context, builder)
-        result.address = builder.gep(proxy.address, [values[1]])
-        length = builder.sub(builder.extract_value(proxy.shape, 0), values[1])
-        result.shape = builder.insert_value(proxy.shape, length, 0)
-        return result._getvalue()
-
-    return buffer(buffer, numba.intp), code
-
-
-@extending.intrinsic
 def _new_view(_: Any, buffer: Any, first: Any, count: Any) -> Any:
     """Return a buffer of some elements, or rows, of another, in compiled code."""
 
@@ -158,7 +143,7 @@ def _widest_registers() -> Callable[..., Any]:
 
 @extending.overload(language.view_from, strict=False, jit_options=_INLINED)
 def _view_from(array: Any, first: Any) -> Callable[..., Any]:
-    return lambda array, first: _shifted(array, first)
+    return lambda array, first: _new_view(array, first, len(array) - first)
 
 
 @extending.overload(language.view_of, strict=False, jit_options=_INLINED)

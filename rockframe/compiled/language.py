@@ -9,6 +9,7 @@ lane. A loop over all lanes that reads and writes only such an array is compiled
 several lanes at once.
 """
 
+import inspect
 import os
 from collections.abc import Callable
 from contextvars import ContextVar
@@ -47,12 +48,28 @@ def kernel(function: Function) -> Function:
 
 
 def inlined(function: Function) -> Function:
-    """Mark a function, or a method, that is compiled into each of its callers.
-
-    That is for the few functions that every step calls.
-    """
+    """Mark a function or method to be compiled into its callers: the few that every step calls."""
     KERNELS[function] = True
     return function
+
+
+def call_of_either(method: Callable[..., Any], is_first: str, first: str, second: str) -> Any:
+    """Return a method, yet unmarked, that calls the one of its name of one of two objects.
+
+    Which one, and both objects, are written as expressions of `self`.
+    """
+    name, (own, *others) = method.__name__, inspect.signature(method).parameters
+    call = f"{name}({', '.join(others)})"
+    scope: dict[str, Any] = {}
+    exec(  # noqa: S102 - compiled code does not look up methods by names in variables
+        f"def {name}({', '.join([own, *others])}):\n"
+        f"    return {first}.{call} if {is_first} else {second}.{call}\n",
+        scope,
+    )
+    written: Any = scope[name]
+    written.__module__, written.__qualname__ = method.__module__, method.__qualname__
+    written.__doc__ = method.__doc__
+    return written
 
 
 def is_method(function: Callable[..., Any]) -> bool:

@@ -29,10 +29,7 @@ _shared = cache(Signature)
 
 
 class CompilationUnit:
-    """A function and the structure of its arguments: what is compiled once.
-
-    It may run as plain Python until that pays.
-    """
+    """A function and the structure of its arguments: compiled once, or Python until that pays."""
 
     def __init__(
         self,

@@ -226,25 +226,9 @@ def positive_root(function: Callable[[float], float], start: float, owner: str) 
 def equilibrium_height(
     base: Base, weight: float, depth: float, ends: tuple[float, float], own: Any
 ) -> float:
-    """Return the height at which a base carries a weight, found numerically.
+    """Return the height [m] at which a base carries a weight, searched near a settlement `depth`.
 
-    Parameters
-    ----------
-    base : Base
-        The base.
-    weight : float
-        Weight on the base, per unit mass [m s^-2].
-    depth : float
-        Estimate of its settlement [m].
-    ends : tuple of float
-        Heights of both ends above the height that is sought [m].
-    own : Variables
-        The base's own variables, which are set to those of the start of a run.
-
-    Returns
-    -------
-    float
-        [m]
+    `ends` are the heights of both ends above it; `own` is set to the variables at a start there.
     """
 
     def excess(height: float) -> float:

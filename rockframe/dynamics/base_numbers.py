@@ -57,24 +57,12 @@ class BaseNumbers:
 def pads_numbers(
     body: Body,
     *,
-    stiffness: float,
+    stiffness: float,  # k and c of one pad over the reference mass of the model [s^-2], [s^-1]
     damping: float,
-    restitution: tuple[float, float],
-    load: float = 1.0,
+    restitution: tuple[float, float],  # eps of a corner that lands, on the left, on the right pad
+    load: float = 1.0,  # mass on the pads over the reference mass
 ) -> BaseNumbers:
-    """Return the pads under a body.
-
-    Parameters
-    ----------
-    body : Body
-        The body on them.
-    stiffness, damping : float
-        k and c of one pad over the reference mass of the model [s^-2], [s^-1].
-    restitution : tuple of float
-        eps of a corner that lands on the left and on the right pad [1].
-    load : float
-        Mass on the pads over the reference mass [1].
-    """
+    """Return the pads under a body."""
     rest = 0.5 * load * body.gravity / stiffness
     size = hypot(0.5 * (body.left + body.right), body.height)
     noise = ROUNDING * (1.0 + size / rest)
@@ -252,22 +240,14 @@ _BED_COLUMNS: Final = (
 
 
 def bed_numbers(
-    body: Body, *, stiffness: float, damping: float, by_pressure: bool, load: float = 1.0
+    body: Body,
+    *,
+    stiffness: float,  # k0 and c0 per length of base, over the reference mass of the model
+    damping: float,
+    by_pressure: bool,  # whether the bed separates also where its pressure would be negative
+    load: float = 1.0,  # mass on the bed over the reference mass
 ) -> BaseNumbers:
-    """Return the bed under a body.
-
-    Parameters
-    ----------
-    body : Body
-        The body on it.
-    stiffness, damping : float
-        k0 and c0 per length of base, over the reference mass of the model [m^-1 s^-2],
-        [m^-1 s^-1].
-    by_pressure : bool
-        Whether the bed separates also where its pressure would be negative.
-    load : float
-        Mass on the bed over the reference mass [1].
-    """
+    """Return the bed under a body."""
     width = body.left + body.right
     settlement = load * body.gravity / (width * stiffness)
     size = hypot(0.5 * width, body.height)

@@ -259,3 +259,8 @@ class Rigid(Bed):
     """A rigid base in a chain of bodies: a bed without forces; constraints hold its ends."""
 
     __slots__ = ()
+
+    def starting(self, line: BaseLine, own: Variables) -> int:
+        """Return the contact at the start of a run: an end that is, or moves, higher is raised."""
+        higher = line.left - line.right or line.left_speed - line.right_speed
+        return both_contacts(int(higher > 0.0), int(higher < 0.0))

@@ -91,10 +91,7 @@ def link_forces(
     states: Sequence[int] | None = None,
     elongations: Sequence[float] | None = None,
 ) -> list[LinkForce]:
-    """Return elongations and forces of links, from the poses of bodies.
-
-    With `elongations` the forces are those of these elongations instead.
-    """
+    """Return elongations and forces of links at poses; forces of other `elongations`, if given."""
     default = [None] * len(ties)
     points = link_kinematics(bodies, poses, ties)
     others = default if elongations is None else elongations

@@ -266,10 +266,7 @@ class LinkNumbers:
 
 @link_law
 class Tie(NamedTuple):
-    """A spring that pulls, yields or breaks, beside a dashpot, :eq:`eq-tie`, :eq:`eq-tendon`.
-
-    Its variable is the permanent elongation by yielding.
-    """
+    """A spring that pulls, yields or breaks, beside a dashpot, :eq:`eq-tie`, :eq:`eq-tendon`."""
 
     stiffness: float  # k/m
     damping: float  # c/m
@@ -284,7 +281,7 @@ class Tie(NamedTuple):
             return self.limit
         if state == SLACK:
             return -self.limit if self.pushes != 0.0 else 0.0
-        return stretch.elongation - self.slack - own[0]
+        return stretch.elongation - self.slack - own[0]  # less its variable, the yielding so far
 
     def force(self, state: int, stretch: Stretch, own: Vector) -> float:
         """Return k x + c l'."""

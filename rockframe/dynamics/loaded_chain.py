@@ -30,15 +30,12 @@ from rockframe.dynamics.trigonometry import sine_cosine, versine
 
 
 class LoadedChain(NamedTuple):
-    """Bodies that stand on one another, from the top down, and gravity along the lowest base.
-
-    The forces of links are multiplied by `link_factor`.
-    """
+    """Bodies that stand on one another, from the top down, and gravity along the lowest base."""
 
     bodies: tuple[StandingBody, ...]
     along_gravity: float = 0.0
     ties: tuple[ChainLink, ...] = ()
-    link_factor: float = 1.0
+    link_factor: float = 1.0  # of the forces of links
 
     @property
     def rests_upright(self) -> bool:

@@ -353,9 +353,3 @@ def share_at_lift_off(before: float, after: float) -> float:
 def blend(before: float, after: float, share: float) -> float:
     """Return a rate after a share of an impulse, from the rates without and with all of it."""
     return before + share * (after - before)
-
-
-@inlined
-def loss_share(share: float) -> float:
-    """Return the energy loss of a share of a plastic impulse, over that of the whole one [1]."""
-    return share * (2.0 - share)

@@ -265,25 +265,13 @@ class BlockOnRigidGround(RockingNumbers, OnRigidGround):
 
 def rocking_corner(
     *,
-    distance: float,
-    height: float,
-    inertia: float,
-    restitution: float,
+    distance: float,  # horizontal, of the centre of mass from the corner [m]
+    height: float,  # of the centre of mass [m]
+    inertia: float,  # of the block about the corner, over its mass [m^2]
+    restitution: float,  # as of `RockingCorner`
     small_rotation: bool,
 ) -> RockingCorner:
-    """Return a corner about which a block rotates.
-
-    Parameters
-    ----------
-    distance, height : float
-        Horizontal distance and height of the centre of mass from the corner [m].
-    inertia : float
-        Moment of inertia of the block about the corner, over its mass [m^2].
-    restitution : float
-        Ratio of the angular velocities after and before an impact on this corner [1].
-    small_rotation : bool
-        Whether sines and cosines are expanded.
-    """
+    """Return a corner about which a block rotates."""
     angle = atan2(distance, height)
     tangent = angle if small_rotation else tan(angle)
     return RockingCorner(angle, hypot(distance, height), inertia, tangent, restitution)
@@ -292,19 +280,7 @@ def rocking_corner(
 def rigid_ground(
     left: RockingCorner, right: RockingCorner, *, mass: float, small_rotation: bool, gravity: float
 ) -> ContactModel:
-    """Assemble the model of a block on rigid ground.
-
-    Parameters
-    ----------
-    left, right : RockingCorner
-        The corners of the block.
-    mass : float
-        Mass of the block [kg].
-    small_rotation : bool
-        Whether sines and cosines are expanded.
-    gravity : float
-        Acceleration of gravity [m s^-2].
-    """
+    """Assemble the model of a block on rigid ground, of a mass [kg], under gravity [m s^-2]."""
     frequency = max(sqrt(gravity * corner.radius / corner.inertia) for corner in (left, right))
     least = left if left.angle < right.angle else right
 

@@ -1,17 +1,16 @@
 """Links of several laws in one scene: a law that represents one of several."""
 
 from collections.abc import Sequence
+from functools import partial
 from typing import Any, Final, NamedTuple
 
-from rockframe.compiled import Vector, view_from
-from rockframe.dynamics.links import (
-    Bumper,
-    LinkEvent,
-    SteadyForce,
-    Stretch,
-    Tie,
-    link_law,
+from rockframe.compiled import Vector, call_of_either, view_from
+from rockframe.dynamics.links import Bumper, LinkLaw, SteadyForce, Stretch, Tie, link_law
+
+_of_law: Final = partial(
+    call_of_either, is_first="self.which == 0.0", first="self.first", second="self.second"
 )
+"""Makes a method that calls the one of its name of the first law or of the second."""
 
 
 @link_law
@@ -22,23 +21,14 @@ class EitherLaw(NamedTuple):
     first: Any
     second: Any
 
-    def force(self, state: int, stretch: Stretch, own: Vector) -> float:
-        """Return the force of the law."""
-        if self.which == 0.0:
-            return self.first.force(state, stretch, own)
-        return self.second.force(state, stretch, own)
-
-    def energy(self, state: int, stretch: Stretch, own: Vector) -> float:
-        """Return the stored energy."""
-        if self.which == 0.0:
-            return self.first.energy(state, stretch, own)
-        return self.second.energy(state, stretch, own)
-
-    def power(self, state: int, stretch: Stretch, own: Vector) -> float:
-        """Return the dissipated power."""
-        if self.which == 0.0:
-            return self.first.power(state, stretch, own)
-        return self.second.power(state, stretch, own)
+    force = _of_law(LinkLaw.force)
+    energy = _of_law(LinkLaw.energy)
+    power = _of_law(LinkLaw.power)
+    starting = _of_law(LinkLaw.starting)
+    guard = _of_law(LinkLaw.guard)
+    switch = _of_law(LinkLaw.switch)
+    shown = _of_law(LinkLaw.shown)
+    idles = _of_law(LinkLaw.idles)
 
     def variables(self) -> int:
         """Return the number of variables, the larger of both laws."""
@@ -56,34 +46,6 @@ class EitherLaw(NamedTuple):
     def states(self) -> int:
         """Return the number of states, the larger of both laws."""
         return max(self.first.states(), self.second.states())
-
-    def starting(self, stretch: Stretch, own: Vector) -> int:
-        """Return the state at the start of a run; sets the variables."""
-        if self.which == 0.0:
-            return self.first.starting(stretch, own)
-        return self.second.starting(stretch, own)
-
-    def guard(self, which: int, state: int, stretch: Stretch, own: Vector) -> tuple[float, float]:
-        """Return a guard of the law, and its rate."""
-        if self.which == 0.0:
-            return self.first.guard(which, state, stretch, own)
-        return self.second.guard(which, state, stretch, own)
-
-    def switch(self, which: int, state: int, stretch: Stretch, own: Vector) -> LinkEvent:
-        """Return the event as a guard falls through zero; sets the variables."""
-        if self.which == 0.0:
-            return self.first.switch(which, state, stretch, own)
-        return self.second.switch(which, state, stretch, own)
-
-    def shown(self, state: int) -> int:
-        """Return the state that users see."""
-        if self.which == 0.0:
-            return self.first.shown(state)
-        return self.second.shown(state)
-
-    def idles(self, state: int) -> bool:
-        """Whether it does nothing in a state."""
-        return self.first.idles(state) if self.which == 0.0 else self.second.idles(state)
 
     def number_count(self) -> int:
         """Return the number of numbers of both laws, and of `which`."""

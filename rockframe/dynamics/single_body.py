@@ -216,23 +216,7 @@ def rigid_body(
     small_rotation: bool,
     gravity: float,
 ) -> Body:
-    """Return the body of the equations of motion.
-
-    Parameters
-    ----------
-    left, right : float
-        Horizontal distances from the centre of mass to the ends of the base, upright [m].
-    height : float
-        Height h of the centre of mass above the base [m].
-    inertia : float
-        I_O over the reference mass, by which all is divided [m^2].
-    restraint : int
-        A rule of :mod:`rockframe.dynamics.body`; at small rotation the rules coincide.
-    small_rotation : bool
-        Whether the kinematics are expanded to second order.
-    gravity : float
-        Acceleration of gravity [m s^-2].
-    """
+    """Return the body of the equations; at small rotation the rules of restraint coincide."""
     return Body(
         height=height,
         left=left,
@@ -248,21 +232,7 @@ def rigid_body(
 def single_body(
     name: str, body: Body, base: BaseNumbers, mass: float, rest_rotation: float = 0.0
 ) -> ContactModel:
-    """Assemble the model of a body on a base.
-
-    Parameters
-    ----------
-    name : str
-        Name of the model.
-    body : Body
-        The body, per unit of its own mass.
-    base : BaseNumbers
-        The base under it.
-    mass : float
-        Mass of the body [kg].
-    rest_rotation : float
-        Rotation of the body at rest, :meth:`rockframe.dynamics.statics.StandingChain.rest` [rad].
-    """
+    """Assemble the model of a body on a base, per unit of its own mass [kg]."""
     part = BodyOnBase(body, base.law)
     vertical = sqrt(base.vertical_stiffness)
     rocking = sqrt(base.rotational_stiffness / (body.inertia + body.height**2))

@@ -240,12 +240,8 @@ class SlideMotion(OnRigidGround, SlideNumbers):
 
     @inlined
     def guards_in(self, mode: int, state: Vector, slope: Slope, ground: Ground) -> Guards:
-        """Return the guards, :eq:`eq-slide-guards`."""
-        return self.guards_under(mode, state, slope, self.loads(mode, state, ground))
-
-    @inlined
-    def guards_under(self, mode: int, state: Vector, slope: Slope, loads: Loads) -> Guards:
-        """Return the guards, :eq:`eq-slide-guards`, under given loads."""
+        """Return the guards of the block, :eq:`eq-slide-guards`."""
+        loads = self.loads(mode, state, ground)
         scale, size = 1.0 / self.gravity, 1.0 / (self.left + self.right)
         bearing, sign, rate = self.bearing_in(mode), self.slip_sign(mode), state[DOF + ROTATION]
         side = self.side(bearing)
@@ -278,6 +274,8 @@ class SlideMotion(OnRigidGround, SlideNumbers):
         values = landing, stopping, pressing, left, to_right, to_left
         return Guards(values, (falling, slowing, 0.0, 0.0, 0.0, 0.0))
 
+    guards_of_block = guards_in
+
     @kernel
     def kinetic_energy(self, mode: int, state: Vector) -> float:
         """Return the kinetic energy relative to the ground."""
@@ -295,35 +293,18 @@ class SlideMotion(OnRigidGround, SlideNumbers):
 
     @kernel
     def energies(self, mode: int, state: Vector) -> Energies:
-        """Return kinetic and gravity energy; nothing is elastic."""
-        return self.energies_of_bodies(mode, state)
-
-    @inlined
-    def energies_of_bodies(self, mode: int, state: Vector) -> Energies:
-        """Return the energies of the block without links."""
+        """Return kinetic and gravity energy of the block without links; nothing is elastic."""
         kinetic = self.kinetic_energy(mode, state)
         return Energies(kinetic, self.gravity * self.centre_rise(mode, state), 0.0, 0.0)
+
+    energies_of_bodies = energies
 
     @kernel
     def observe(
         self, mode: int, state: Vector, slope: Slope, ground: Ground, memory: Vector
     ) -> Numbers:
         """Return the motion of the centre of mass, the reactions, and the slip."""
-        return self.columns_under(mode, state, slope, self.loads(mode, state, ground))
-
-    @inlined
-    def centre_acceleration(self, mode: int, state: Vector, slope: Slope) -> tuple[float, float]:
-        """Return the acceleration of the centre of mass relative to the ground, from a slope."""
-        arm_x, arm_y = self.centre_from_corner(self.side(self.bearing_in(mode)), state[ROTATION])
-        square = state[DOF + ROTATION] * state[DOF + ROTATION]
-        horizontal = slope[SLIP] + arm_y * slope[ROTATION] - arm_x * square
-        return horizontal, slope[RISE] - arm_x * slope[ROTATION] - arm_y * square
-
-    @kernel
-    def columns_under(
-        self, mode: int, state: Vector, slope: Slope, loads: Loads
-    ) -> tuple[float, ...]:
-        """Return the columns of :meth:`observe` under given loads."""
+        loads = self.loads(mode, state, ground)
         bearing, rotation, rate = self.bearing_in(mode), state[ROTATION], state[DOF + ROTATION]
         side = self.side(bearing)
         arm_x, _ = self.centre_from_corner(side, rotation)
@@ -340,3 +321,13 @@ class SlideMotion(OnRigidGround, SlideNumbers):
         lift = self.centre_rise(mode, state)
         body = rotation, rate, lift, up, place, shear, across, slope[ROTATION], horizontal, rise
         return body + (shear, normal, left, right, state[SLIP], state[DOF + SLIP])
+
+    columns_of_block = observe
+
+    @inlined
+    def centre_acceleration(self, mode: int, state: Vector, slope: Slope) -> tuple[float, float]:
+        """Return the acceleration of the centre of mass relative to the ground, from a slope."""
+        arm_x, arm_y = self.centre_from_corner(self.side(self.bearing_in(mode)), state[ROTATION])
+        square = state[DOF + ROTATION] * state[DOF + ROTATION]
+        horizontal = slope[SLIP] + arm_y * slope[ROTATION] - arm_x * square
+        return horizontal, slope[RISE] - arm_x * slope[ROTATION] - arm_y * square

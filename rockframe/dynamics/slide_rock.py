@@ -54,14 +54,7 @@ class SlideRock(SlideMotion):
 
     @kernel
     def switch(self, mode: int, guard: int, state: Vector, ground: Ground, memory: Vector) -> int:
-        """Return the mode after the switch of a guard; an impact also changes the rates."""
-        return self.switch_body(mode, guard, state, ground, memory)
-
-    @inlined
-    def switch_body(
-        self, mode: int, guard: int, state: Vector, ground: Ground, memory: Vector
-    ) -> int:
-        """Return the mode after a guard of bearing or slip has fallen through zero."""
+        """Return the mode after a guard of bearing or slip; an impact also changes the rates."""
         bearing = self.bearing_in(mode)
         if bearing >= FLIGHT_RIGHT:
             new = self.land(mode, guard, state, ground, memory)
@@ -84,6 +77,8 @@ class SlideRock(SlideMotion):
             new = self.next_mode(mode, state, ground, guard in (SLIP_RIGHT, SLIP_LEFT), tipped)
         memory[LAST_EVENT] = self.event_between(mode, new)
         return new
+
+    switch_body = switch
 
     @inlined
     def record_slip(self, state: Vector, memory: Vector) -> None:

@@ -88,10 +88,7 @@ class StandingChain(LoadedChain):
         return poses, float(poses[0].force.upward + load)
 
     def uplift_rotation(self, side: float) -> float:
-        """Return rotation to a side at which an end of a single body with links lifts off [rad].
-
-        NaN if there is none up to a right angle.
-        """
+        """Return rotation to a side [rad] at which an end of one linked body lifts; NaN if none."""
         from scipy.optimize import brentq
 
         (standing,) = self.bodies

@@ -32,7 +32,6 @@ from rockframe.dynamics.on_base import (
     Mode,
     blend,
     is_lifted,
-    loss_share,
     share_at_lift_off,
     speed_noise,
 )
@@ -185,7 +184,8 @@ def repin_at_landing(
     system.blend_velocities(before, share, state)
     system.record_impulse(k, 0.0, 0.0, share * hold)
     memory[HELD_PLACE + k] = place
-    memory[REPINNING_LOSS] = blend(lost, memory[REPINNING_LOSS], loss_share(share))
+    # a share of a plastic impulse takes more than this share of the energy
+    memory[REPINNING_LOSS] = blend(lost, memory[REPINNING_LOSS], share * (2.0 - share))
     end, _ = end_speed(part, left, system.state_of(k, state))
     system.shift_vertical(k, 0.0, target - end, state)
     return True

@@ -169,7 +169,7 @@ class TiedSlideRock(TiedNumbers, LinkMechanics, SlideRock):  # pyright: ignore[r
     def guards_of_bodies(self, mode: int, state: Vector, slope: Slope, ground: Ground) -> Guards:
         """Write the guards of the block, and their rates."""
         values, changes = self.guard_workspace(0), self.guard_workspace(1)
-        guards = self.guards_under(mode, state, slope, self.loads(mode, state, ground))
+        guards = self.guards_of_block(mode, state, slope, ground)
         put(guards.values, 0, values)
         put(guards.changes, 0, changes)
         return Guards(values, changes)
@@ -191,7 +191,7 @@ class TiedSlideRock(TiedNumbers, LinkMechanics, SlideRock):  # pyright: ignore[r
         # links without a force have columns, too
         self.write_kinematics_and_poses(mode, state, self.workspace())
         out = self.column_workspace()
-        put(self.columns_under(mode, state, slope, self.loads(mode, state, ground)), 0, out)
+        put(self.columns_of_block(mode, state, slope, ground, memory), 0, out)
         return out
 
 

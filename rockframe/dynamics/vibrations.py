@@ -58,10 +58,7 @@ def fastest_vibration(
 def _link_matrices(
     bodies: Sequence[ChainBody], ties: Sequence["ChainLink"], first: int
 ) -> tuple[Matrix, Matrix]:
-    """Return bounds of the stiffness and damping of links, whatever their directions.
-
-    Bodies before number `first` do not move.
-    """
+    """Return bounds of stiffness and damping of links between bodies from `first` on and others."""
     size = 2 * len(bodies)
     stiffness, damping = np.zeros((size, size)), np.zeros((size, size))
     x, y, rotation = upright_jacobians(bodies)

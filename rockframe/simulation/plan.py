@@ -176,7 +176,9 @@ def read_continuation(dataset: xr.Dataset, system: Assembly, faults: list[str]) 
     passed = not math.isnan(time)
     if json_attribute(dataset, "system_json", dict, owner=_INITIAL) != system.to_dict():
         faults.append("initial is the end of a run of another system")
-    elif (ending.state.size, ending.memory.size) != _sizes_of_ending(system):
+    elif (ending.state.size, ending.memory.size) != (
+        system.model.scales.size, len(system.model.memory),
+    ):  # fmt: skip
         faults.append(f"initial has an attribute {END_STATE!r} that lacks numbers; it is damaged")
     elif passed and not _returned_within_limit(dataset, system, ending):
         faults.append("initial is the end of a run that overturned")
@@ -192,11 +194,6 @@ def _read_ending(stored: Mapping[str, Any]) -> Ending:
         np.array(stored["state"], dtype=np.float64),
         np.array(stored["memory"], dtype=np.float64),
     )
-
-
-def _sizes_of_ending(system: Assembly) -> tuple[int, int]:
-    """Return the sizes of state and memory."""
-    return system.model.scales.size, len(system.model.memory)
 
 
 def _cut_words(dataset: xr.Dataset) -> str:

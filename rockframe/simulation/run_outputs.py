@@ -40,7 +40,6 @@ from rockframe.results.points import point_histories, point_labels, point_peaks
 from rockframe.results.schema import ENERGIES, ON_REQUEST, SCHEMA, checked_results
 from rockframe.results.variables.variable import EVENT, TIME
 from rockframe.signals.arrays import AnyArray, Array
-from rockframe.signals.motion import Incline
 from rockframe.simulation.plan import Plan
 from rockframe.solve.observe import memory_at_outputs, observe_run, observe_states
 from rockframe.solve.trajectory import Trajectory
@@ -203,7 +202,8 @@ class _ObservedRun:
             columns = {name: column[in_time] for name, column in columns.items()}
         if self.whole:
             moved = steps.ground - np.array([slope.along_gravity, 0.0])
-            ground = _horizontal_and_vertical(moved, slope)
+            level = replace(slope, inclination=-slope.inclination)
+            ground = np.column_stack(level.rotated(*moved.T))
             columns = self._with_derived(without_gravity(columns, slope), steps.time, ground, moved)
         else:
             columns |= friction_demands(columns, load)
@@ -291,12 +291,6 @@ def _diagnostic_state(
         "time": time,
         **ground_histories(ground, has_vertical_motion=True),
     }
-
-
-def _horizontal_and_vertical(moved: Array, slope: Incline) -> Array:
-    """Return horizontal and vertical components of those along and normal to the base."""
-    back = replace(slope, inclination=-slope.inclination)
-    return np.column_stack(back.rotated(moved[:, 0], moved[:, 1]))
 
 
 def compute_or_note(

@@ -154,10 +154,7 @@ def store_outputs(
 def update_peaks(
     equations: BoundEquations, count: int, h: float, clock: Vector, w: Workspace
 ) -> None:
-    """Update the peaks of the rotation to both sides, with extrema inside the step.
-
-    For other bodies, the largest ratio of a rotation to its limit.
-    """
+    """Update peaks of the rotation, with extrema inside the step, and ratios of other bodies."""
     size = equations.coordinate_count
     clock[at.PEAK_LEFT], clock[at.PEAK_RIGHT] = peaks_in_step(
         0, size, count, h, clock[at.PEAK_LEFT], clock[at.PEAK_RIGHT], w
@@ -176,10 +173,7 @@ def update_peaks(
 def peaks_in_step(
     row: int, size: int, count: int, h: float, left: float, right: float, w: Workspace
 ) -> tuple[float, float]:
-    """Return the peaks of a rotation to both sides after a step, as absolute values [rad].
-
-    `row` is the index of its limits.
-    """
+    """Return peaks to both sides after a step, absolute, of the rotation with limits at `row`."""
     rotation = rotation_in_step(row, size, w.limits, w.state, w.new_state)
     peaks = rotation.may_peak(h, left, right)
     left, right = max(left, rotation.left), max(right, rotation.right)

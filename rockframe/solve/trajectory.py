@@ -170,10 +170,8 @@ class Trajectory(Summary):
     stored_state: Matrix
     mode: Integers  # modes of the model
     work: Matrix  # energies dissipated by dashpots and put in by the ground; no rows unless stored
-    start_mode: int  # the model's mode at the start
     start_memory: Vector  # the model's memory at the start
     events: Events  # what happened when
-    start_energy: float  # kinetic, gravity and elastic energy at the start, the last less at rest
     as_python: bool  # whether its system runs as plain Python for good: it cannot be compiled
     steps: Steps | None  # None if they were not kept
     # rows of `steps` at the second and following output times, if these are ends of steps

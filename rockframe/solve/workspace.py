@@ -128,14 +128,11 @@ STATE_ERRORS: Final = 3
 
 
 class UnpackedMode(NamedTuple):
-    """A mode, and what it means for steps: unpacked when it begins.
-
-    The contact state is that of the body that the scene is about.
-    """
+    """A mode, and what it means for steps: unpacked when it begins."""
 
     mode: int
     moving: int  # leading coordinates that move
-    contact: int  # rockframe.dynamics.events.ContactState
+    contact: int  # rockframe.dynamics.events.ContactState of the body that the scene is about
     longest_step: float  # longest fixed step that is stable for the relaxation of a constraint [s]
 
 
@@ -194,10 +191,7 @@ class StepArrays(NamedTuple):
 
 
 class Workspace(NamedTuple):
-    """Arrays of one step.
-
-    A *slope* holds accelerations, rates of variables of first order, and powers.
-    """
+    """Arrays of a step; a slope holds accelerations, rates of first-order variables and powers."""
 
     ends: Vector  # memory of both ends of a step: of the next six arrays
     state: Vector  # state at the start

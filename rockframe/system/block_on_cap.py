@@ -4,7 +4,7 @@ from abc import abstractmethod
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
-from typing import TYPE_CHECKING, ClassVar
+from typing import ClassVar
 
 import numpy as np
 
@@ -13,6 +13,7 @@ from rockframe.dynamics.body_statics import Pose, standing_body
 from rockframe.dynamics.on_base import BodyOnBase
 from rockframe.dynamics.protocol import ContactModel, Ending
 from rockframe.dynamics.single_body import eccentricity_of
+from rockframe.dynamics.starting import UPRIGHT, AtRest
 from rockframe.dynamics.statics import StandingChain
 from rockframe.dynamics.vibrations import ChainBody
 from rockframe.errors import AssemblyError
@@ -29,9 +30,6 @@ from rockframe.system.setting import (
 from rockframe.system.single_body import SingleBodySetting
 from rockframe.system.statics import SmallMotion, StandingBodies, Statics, static_values
 from rockframe.system.support import BaseWords, Support
-
-if TYPE_CHECKING:
-    from rockframe.dynamics.coupled.model import StackRest
 
 MIN_CAP_MASS_RATIO = 1e-3
 """Least mass of a cap, as a share of the block's, in the coupled equations, which cannot be solved
@@ -104,14 +102,11 @@ class BlockOnCapSetting(Setting):
         return poses
 
     @property
-    def rest(self) -> "StackRest":
-        """Rotations and heights of block and cap at rest, for the coupled equations."""
-        from rockframe.dynamics.coupled.model import UPRIGHT, StackRest
-
+    def rest(self) -> list[AtRest]:
+        """Placements of block and cap at rest, for the coupled equations."""
         if not self.leans:
-            return UPRIGHT
-        block, cap = (pose.state for pose in self._rest)
-        return StackRest(block.rotation, block.vertical, cap.rotation, cap.vertical)
+            return [UPRIGHT, UPRIGHT]
+        return [AtRest(pose.state.rotation, pose.state.vertical) for pose in self._rest]
 
     def curve(self, rotations: Sequence[float]) -> list[Statics | None]:
         """Return the equilibria with the block held at rotations, :eq:`eq-static-stack`."""
@@ -209,7 +204,7 @@ class CoupledSetting(BlockOnCapSetting):
     @cached_property
     def rest_rotation(self) -> float:
         """Rotation of the block at rest, with the cap [rad]."""
-        return self.rest.rotation + self.rest.cap_rotation
+        return sum(placement.rotation for placement in self.rest)
 
 
 @dataclass(frozen=True)
@@ -231,13 +226,9 @@ class SlidingCoupledSetting(CoupledSetting):
 
     def contact_model(self) -> ContactModel:
         """Return the equations of two stacked bodies that slip."""
-        from rockframe.dynamics.chain.model import AtRest
         from rockframe.dynamics.chain.on_cap import block_on_cap
 
-        rest = None
-        if self.leans:
-            rest = [AtRest(pose.state.rotation, pose.state.vertical) for pose in self._rest]
-        return block_on_cap(*self.bodies(), self.body.mass, rest, self.frictions)
+        return block_on_cap(*self.bodies(), self.body.mass, self.rest, self.frictions)
 
     def slips_of(self, ending: Ending) -> tuple[SlipRange, ...]:
         """Return how far the block slipped on the cap and, if it can slip, the cap on the soil."""

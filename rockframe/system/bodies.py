@@ -199,11 +199,6 @@ def block_body(block: BlockSI, kind: type[SupportedBody] = SupportedBody) -> Sup
     )  # fmt: skip
 
 
-def with_point_mass(body: SupportedBody, mass: float, x: float, y: float) -> SupportedBody:
-    """Return a body with an added point mass [kg] at x and y from the middle of its base [m]."""
-    return combine_masses(body.half_width, (body.mass_at(), PlaneMass(mass, x, y, 0.0)))
-
-
 def block_cap(block: BlockSI, cap: CushionCapSI) -> Cap:
     """Return a cap in SI units; it is as wide as the block unless its width is given."""
     width = cap.width if cap.width is not None else block.width

@@ -8,6 +8,7 @@ from functools import cached_property
 from rockframe.case_arrays import isnan
 from rockframe.dynamics.protocol import ContactModel, Ending
 from rockframe.dynamics.single_body import single_body
+from rockframe.dynamics.starting import AtRest
 from rockframe.errors import AssemblyError
 from rockframe.system.bodies import BaseFriction
 from rockframe.system.options import restraint_words
@@ -116,7 +117,7 @@ class SlidingBodySetting(SingleBodySetting):
 
     def contact_model(self) -> ContactModel:
         """Return the equations of slip, rotation and rise: those of a chain of one body."""
-        from rockframe.dynamics.chain.model import AtRest, ChainBody, chain_model
+        from rockframe.dynamics.chain.model import ChainBody, chain_model
 
         body, rest = self.load.rigid_body, None
         if self.leans and self.support.standing.rest is not None:

@@ -4,20 +4,22 @@ import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import TYPE_CHECKING, Any, Final
+from typing import Any, Final
 
 from rockframe.components import Component, Link, Load, RigidGround, Tendon, TwoSpringSupport
 from rockframe.components.bases import Impact
 from rockframe.components.block_numbers import BlockSI
+from rockframe.components.shapes.standing import PlaneMass
 from rockframe.dynamics.body_statics import Pose
 from rockframe.dynamics.protocol import MAX_MODES, ContactModel, Ending
+from rockframe.dynamics.starting import UPRIGHT, AtRest
 from rockframe.errors import AssemblyError
 from rockframe.system.bodies import (
     NO_SLIP,
     BaseFriction,
     BaseLoad,
     block_body,
-    with_point_mass,
+    combine_masses,
 )
 from rockframe.system.links import place_links
 from rockframe.system.options import (
@@ -47,9 +49,6 @@ from rockframe.system.setting import (
 from rockframe.system.stacked_bodies import StackedBodies, combined_body
 from rockframe.system.statics import SmallMotion, Statics, static_values
 from rockframe.system.support import RigidBase, corner_reactions
-
-if TYPE_CHECKING:
-    from rockframe.dynamics.chain.model import AtRest
 
 NO_EQUILIBRIUM: Final = (
     "the bodies find no rest under their weight: their bases are too soft for them"
@@ -171,11 +170,9 @@ class StackSetting(StackedBodies):
             raise AssemblyError(faults)
         return poses
 
-    def _rest_positions(self) -> "list[AtRest]":
+    def _rest_positions(self) -> list[AtRest]:
         """Return the position of each body at rest on its base; full contact on rigid bases."""
-        from rockframe.dynamics.chain.model import AtRest
-
-        positions = [AtRest(0.0, 0.0) for _ in self.bodies]
+        positions = [UPRIGHT] * len(self.bodies)
         for group, pose in zip(self.groups, self._rest, strict=True):
             lowest, rotation, vertical = group[-1], pose.state.rotation, pose.state.vertical
             if len(group) > 1:  # from the joined body's centre of mass to that of the lowest one
@@ -404,7 +401,9 @@ def stack_setting(
     for link in links:  # masses of loads are added to their bodies
         k = link.si.on_body - 1
         if isinstance(link, Load) and link.si.moving_mass and k < len(stacked):
-            stacked[k] = with_point_mass(stacked[k], link.si.moving_mass, *link.si.at)
+            x, y = link.si.at
+            masses = stacked[k].mass_at(), PlaneMass(link.si.moving_mass, x, y, 0.0)
+            stacked[k] = combine_masses(stacked[k].half_width, masses)
     bodies = tuple(stacked)
     tops = tuple(
         block.height - body.centre_height for block, body in zip(blocks, stacked, strict=True)

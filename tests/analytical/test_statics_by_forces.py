@@ -18,8 +18,6 @@ from rockframe.dynamics.body_statics import (
     base_derivatives,
     standing_body,
 )
-from rockframe.dynamics.coupled.model import state_at
-from rockframe.dynamics.coupled.model import system_of as coupled_of
 from rockframe.dynamics.linearization import linearized_chain
 from rockframe.dynamics.on_base import BodyOnBase
 from rockframe.dynamics.pads import ElasticPads
@@ -170,14 +168,14 @@ def test_stack_at_rest_has_zero_acceleration(block, inclination, restraint, rota
         BLOCKS[block], BASES["pads"], CAP, BASES["bed"], inclination=inclination,
         restraint=restraint, rotation=rotation,
     ).setting  # fmt: skip
-    system = coupled_of(*setting.bodies())
-    mode, state, _ = state_at(system, setting.rest)
+    system = setting.contact_model().system
+    mode, state, _ = setting.contact_model().initial(Start())
     slope = system.accelerate(mode, state, Ground(setting.slope.along_gravity, 0.0))
     assert np.abs(slope[:4]).max() < 1e-11 * setting.gravity
     held = setting.statics(setting.rest_rotation)
     size = setting.load.weight * setting.body.half_width
     assert held.restoring_moment == pytest.approx(0.0, abs=1e-11 * size)
-    assert held.reactions["cap_rotation"] == pytest.approx(setting.rest.cap_rotation, abs=1e-14)
+    assert held.reactions["cap_rotation"] == pytest.approx(setting.rest[1].rotation, abs=1e-14)
 
 
 @pytest.mark.parametrize("base", BASES)

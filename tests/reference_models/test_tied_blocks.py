@@ -9,11 +9,12 @@ import pytest
 import rockframe as rf
 from rockframe.dynamics.base_numbers import pads_numbers
 from rockframe.dynamics.chain.link_rows import GROUND, ChainLink
-from rockframe.dynamics.chain.model import AtRest, chain_model
+from rockframe.dynamics.chain.model import chain_model
 from rockframe.dynamics.events import EventKind
 from rockframe.dynamics.links import LinkNumbers, Tie
 from rockframe.dynamics.protocol import Start
 from rockframe.dynamics.single_body import rigid_body
+from rockframe.dynamics.starting import AtRest
 from rockframe.dynamics.vibrations import ChainBody
 from rockframe.solve.accuracy import accuracy_of
 from rockframe.solve.integrate import integrate

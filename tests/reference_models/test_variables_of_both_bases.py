@@ -13,10 +13,11 @@ from plain_python import plain_python
 
 from rockframe.dynamics.base_numbers import BaseNumbers, pads_numbers, pads_over
 from rockframe.dynamics.body import LEADING_CORNER
-from rockframe.dynamics.coupled.model import StackRest, coupled
+from rockframe.dynamics.coupled.model import coupled
 from rockframe.dynamics.point_law import Viscoelastic, point_law
 from rockframe.dynamics.protocol import Column, Start
 from rockframe.dynamics.single_body import rigid_body
+from rockframe.dynamics.starting import UPRIGHT
 from rockframe.dynamics.vibrations import ChainBody
 from rockframe.signals import Motion
 from rockframe.solve.accuracy import accuracy_of
@@ -103,7 +104,7 @@ def stack(above, below):
         ChainBody(block, above(pads), 1.0, 0.0, 0.0),
         ChainBody(cap, below(soil), CAP_MASS, cap.height, 0.0),
         1e4,
-        StackRest(0.0, 0.0, 0.0, 0.0),
+        [UPRIGHT, UPRIGHT],
     )
 
 

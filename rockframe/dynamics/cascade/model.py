@@ -17,27 +17,12 @@ def cascade(
     first: ContactModel,
     second: ContactModel,
     *,
-    top: float,
-    cap_centre: float,
-    offset: float,
-    rest_rotation: float,
+    top: float,  # of the cap above the centre of mass of the first body [m]
+    cap_centre: float,  # likewise [m]
+    offset: float,  # distance of this centre of mass to the right of the middle of the cap [m]
+    rest_rotation: float,  # of the first body [rad]
 ) -> ContactModel:
-    """Assemble the model of a block on the cap of a body on a base.
-
-    Parameters
-    ----------
-    first : ContactModel
-        Block and cap as one body on the soil, by
-        :func:`rockframe.dynamics.single_body.single_body`.
-    second : ContactModel
-        The block on its base, of the same function.
-    top, cap_centre : float
-        Heights of the cap's top and of its centre above the first body's centre of mass [m].
-    offset : float
-        Distance of this centre of mass to the right of the middle of the cap [m].
-    rest_rotation : float
-        Rotation of the first body at rest [rad].
-    """
+    """Assemble a cascade of block and cap as one body on the soil, and of the block on its base."""
     ratio = first.mass / second.mass
     lower_part, upper_part = (cast("SingleBody", stage.system).part for stage in (first, second))
     system = Cascade(upper_part, lower_part, ratio, top, cap_centre, offset)

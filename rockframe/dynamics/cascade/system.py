@@ -81,10 +81,7 @@ class Cascade(Stacked, Stages):
     def cap_top_motion(
         self, mode: int, state: Vector, angular: float, vertical: float, horizontal: float
     ) -> PointMotion:
-        """Return the motion of the middle of the cap's top, :eq:`eq-carried`.
-
-        `angular`, `vertical` and `horizontal` are the accelerations of the lower body.
-        """
+        """Return motion of the cap's top by accelerations of the lower body, :eq:`eq-carried`."""
         body = self.state_of(LOWER, state)
         attitude, rate = self.lower.body.attitude(body.rotation), body.angular_velocity
         centre_velocity = self.lower.horizontal_velocity(self.modes_in(mode).lower, body, attitude)
@@ -274,10 +271,7 @@ class Cascade(Stacked, Stages):
 
     @kernel
     def centre_position(self, k: int, mode: int, state: Vector, memory: Vector) -> float:
-        """Return the horizontal displacement of a centre of mass [m].
-
-        It follows from the rotation about the held point, or is a coordinate where none is held.
-        """
+        """Return x of a centre of mass: about the held point, or free [m]."""
         modes, body, held_at = self.modes_in(mode), self.state_of(k, state), memory[HELD_PLACE + k]
         if k == UPPER:
             return self.upper.horizontal_position(modes.upper, body, held_at)

@@ -183,18 +183,10 @@ class RigidCorners(Chain):
 
     @inlined
     def release_all(self, mode: int, state: Vector, memory: Vector) -> int:
-        """Release bodies that friction holds on deformable bases: there are none here."""
+        """Return the mode itself: friction holds no bodies here that could be released, or slip."""
         return mode
 
-    @inlined
-    def resume_slips(self, mode: int, state: Vector, memory: Vector) -> int:
-        """Return the mode in which released bodies slip, or are held again: none are here."""
-        return mode
-
-    @inlined
-    def with_deformable_slips(self, mode: int, state: Vector, memory: Vector) -> int:
-        """Return the mode with the slips on deformable bases of the last trial: none slips here."""
-        return mode
+    resume_slips = with_deformable_slips = release_all
 
     @inlined
     def add_trial_constraint(
@@ -214,15 +206,10 @@ class RigidCorners(Chain):
     def try_all_slips(
         self, mode: int, subset: int, closed: int, noise: float, state: Vector
     ) -> Trial:
-        """Try all combinations of slips with a set of closed corners that bear: none slips here."""
+        """Try other slips with a set of closed corners that bear: none slips here."""
         return Trial(0, math.inf)
 
-    @inlined
-    def try_stopping_slips(
-        self, mode: int, subset: int, closed: int, noise: float, state: Vector
-    ) -> Trial:
-        """Try impulses that stop a slip, with a set of corners that bear: none slips here."""
-        return Trial(0, math.inf)
+    try_stopping_slips = try_all_slips
 
     @inlined
     def solve_standing(self, mode: int, corners: int, state: Vector) -> None:

@@ -58,15 +58,12 @@ class Trial(NamedTuple):
 
 
 class BearingCorners(NamedTuple):
-    """The set of corners that bear, the number of admissible sets, and the next best, or -1.
+    """The corners that bear."""
 
-    `held` is the corner that must be held though it does not press, where none is admissible, or 0.
-    """
-
-    chosen: int
-    admissible: int
-    next_best: int
-    held: int
+    chosen: int  # the set of them
+    admissible: int  # number of admissible sets
+    next_best: int  # the next best set, or -1
+    held: int  # where none is admissible, a corner that is held though it does not press; else 0
 
 
 @kernel

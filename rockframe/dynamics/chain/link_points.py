@@ -168,10 +168,7 @@ class LinkPoints(LinkRows):
 
     @inlined
     def link_stretch(self, row: Vector, work: Vector, idle: bool) -> Stretch:
-        """Return elongation of a link, rate and acceleration, from the accelerations of its bodies.
-
-        The acceleration of an idle link is left 0.
-        """
+        """Return a link's elongation, rate and, unless idle, acceleration from its bodies'."""
         first, second = self.end_points(row, work)
         stretch, x, y = self.link_kinematics(row, first, second)
         if idle:

@@ -4,8 +4,8 @@ One machine code serves all links of a law, whatever their number.
 """
 
 import math
-from collections.abc import Iterator
-from typing import TYPE_CHECKING, Any, Final, NamedTuple
+from collections.abc import Callable, Iterator
+from typing import Any, Final, NamedTuple
 
 import numpy as np
 
@@ -13,7 +13,7 @@ from rockframe.compiled import Vector, inlined, kernel, numbers_in, view_from, v
 from rockframe.dynamics.chain.returned import ReturnedArrays
 from rockframe.dynamics.links import GUARDS, LinkNumbers
 from rockframe.dynamics.pads import ROUNDING
-from rockframe.dynamics.protocol import Column, Energies, Ground, Guards, Slope, column_of
+from rockframe.dynamics.protocol import Column, column_of
 
 GROUND: Final = -1
 """In place of the number of a body."""
@@ -90,79 +90,17 @@ class LinkedChainNumbers(NamedTuple):
     rows: Vector  # the array of the chain, then the rows of the links and their workspace
 
 
-class Linkable(ReturnedArrays):
-    """What links need of the system of the bodies, which implements all of it. A mixin."""
-
-    __slots__ = ()
-    body_count: int
-
-    if TYPE_CHECKING:
-
-        def moving_in(self, mode: int) -> int:
-            """Return the number of coordinates that move in a mode."""
-            raise NotImplementedError
-
-        def workspace(self) -> Vector:
-            """Return the workspace of all bodies: places, velocities, loads and accelerations."""
-            raise NotImplementedError
-
-        def bodies_end(self) -> int:
-            """Return the index behind rows and workspace of the bodies."""
-            raise NotImplementedError
-
-        def body_guard_count(self) -> int:
-            """Return the number of guards of all bodies."""
-            raise NotImplementedError
-
-        def body_column_count(self) -> int:
-            """Return the number of columns of all bodies and their bases."""
-            raise NotImplementedError
-
-        def write_poses(self, mode: int, state: Vector, work: Vector) -> None:
-            """Write displacements and rotations of bodies, after `write_kinematics`."""
-            raise NotImplementedError
-
-        def write_kinematics_and_poses(self, mode: int, state: Vector, work: Vector) -> None:
-            """Write places, displacements and velocities of all bodies."""
-            raise NotImplementedError
-
-        def forces_from_slope(self, mode: int, state: Vector, slope: Slope, ground: Ground) -> None:
-            """Write the accelerations of all bodies, from a slope."""
-            raise NotImplementedError
-
-        def guards_of_bodies(
-            self, mode: int, state: Vector, slope: Slope, ground: Ground
-        ) -> Guards:
-            """Write the guards of all bodies, and their rates."""
-            raise NotImplementedError
-
-        def switch_body(
-            self, mode: int, guard: int, state: Vector, ground: Ground, memory: Vector
-        ) -> int:
-            """Carry out the switch that a guard of a body calls for; return the new mode."""
-            raise NotImplementedError
-
-        def reset_event(self, memory: Vector) -> None:
-            """Reset the memory of the last event."""
-            raise NotImplementedError
-
-        def energies_of_bodies(self, mode: int, state: Vector) -> Energies:
-            """Return the energies of bodies and bases, and leave their places in the workspace."""
-            raise NotImplementedError
-
-        def observe_bodies(
-            self, mode: int, state: Vector, slope: Slope, ground: Ground, memory: Vector
-        ) -> Vector:
-            """Write the columns of bodies and bases, and leave their places in the workspace."""
-            raise NotImplementedError
-
-
-class LinkRows(Linkable):
+class LinkRows(ReturnedArrays):
     """Access to the rows and the workspace of links. A mixin of systems."""
 
     __slots__ = ()
+    body_count: int
     link_count: int
     law: Any
+    # methods of the system of the bodies
+    bodies_end: Callable[[], int]  # index behind rows and workspace of the bodies
+    body_guard_count: Callable[[], int]
+    body_column_count: Callable[[], int]  # of all bodies and their bases
 
     @inlined
     def link_row_length(self) -> int:

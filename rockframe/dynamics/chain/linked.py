@@ -3,7 +3,7 @@
 Links load the bodies, :eq:`eq-link-loads`; the equations of the bodies are otherwise unchanged.
 """
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from typing import Any
 
 from rockframe.compiled import Vector, inlined, kernel, numbers_in, view_of
@@ -45,6 +45,19 @@ class LinkMechanics(LinkPoints):
     """Loads, guards, events, energies and columns of links. A mixin of systems."""
 
     __slots__ = ()
+
+    # methods of the system of the bodies; poses are written after the kinematics of `workspace`,
+    # which energies and columns leave there
+    moving_in: Callable[[int], int]
+    workspace: Callable[[], Vector]
+    write_poses: Callable[[int, Vector, Vector], None]
+    write_kinematics_and_poses: Callable[[int, Vector, Vector], None]
+    forces_from_slope: Callable[[int, Vector, Slope, Ground], None]  # writes accelerations
+    guards_of_bodies: Callable[[int, Vector, Slope, Ground], Guards]
+    switch_body: Callable[[int, int, Vector, Ground, Vector], int]
+    reset_event: Callable[[Vector], None]
+    energies_of_bodies: Callable[[int, Vector], Energies]
+    observe_bodies: Callable[[int, Vector, Slope, Ground, Vector], Vector]
 
     @kernel
     def apply_link_forces(self, mode: int, state: Vector, work: Vector) -> float:

@@ -2,15 +2,14 @@
 
 import math
 from collections.abc import Callable, Sequence
-from typing import Final, NamedTuple
+from functools import partial
+from typing import Final
 
 import numpy as np
 
 from rockframe.compiled import Vector
 from rockframe.dynamics.base_numbers import BaseNumbers
-from rockframe.dynamics.bed import both_contacts
-from rockframe.dynamics.bodies import BEFORE_HORIZONTAL, BODY_DOF, ROTATION, VERTICAL
-from rockframe.dynamics.body import BodyState
+from rockframe.dynamics.bodies import BEFORE_HORIZONTAL, BODY_DOF, ROTATION
 from rockframe.dynamics.chain import rows as at
 from rockframe.dynamics.chain.friction import SlippingChain
 from rockframe.dynamics.chain.link_rows import MOMENT_OF_LINKS, ChainLink, link_columns
@@ -24,11 +23,9 @@ from rockframe.dynamics.chain.slips import OFFSET, SlippingBodies
 from rockframe.dynamics.chain.system import Chain
 from rockframe.dynamics.links import GUARDS as GUARDS_OF_LINK
 from rockframe.dynamics.links import SteadyForce
-from rockframe.dynamics.on_base import BodyOnBase, Mode
 from rockframe.dynamics.pads import CORNER_GUARDS, ROUNDING
 from rockframe.dynamics.protocol import (
     BODY_COLUMNS,
-    HELD_PLACE,
     MEMORY,
     Column,
     ContactModel,
@@ -41,17 +38,17 @@ from rockframe.dynamics.single_body import (
     rocking_rate,
     rounding_estimate,
 )
+from rockframe.dynamics.starting import (
+    UPRIGHT,
+    AtRest,
+    StartingBody,
+    starting_placements,
+    write_start,
+)
 from rockframe.dynamics.vibrations import ChainBody, fastest_vibration, is_rigid, per_own_mass
 
 ROUNDING_OF_FORCES: Final = 1e-14
 """Rounding noise of the forces that hold a body on a rigid base, over the weight on it [1]."""
-
-
-class AtRest(NamedTuple):
-    """Placement of a body at rest relative to what it stands on [rad, m]."""
-
-    rotation: float
-    vertical: float
 
 
 def bare_chain(bodies: Sequence[ChainBody], ties: Sequence[ChainLink] = ()) -> Chain:
@@ -76,45 +73,29 @@ def with_friction(bare: Chain, frictions: Sequence[tuple[float, float, float]]) 
 
 
 def chain_model(
-    bodies: Sequence[ChainBody],
-    mass: float,
-    rest: Sequence[AtRest] | None = None,
+    bodies: Sequence[ChainBody],  # from the top down
+    mass: float,  # the reference mass, over which all masses and forces are given [kg]
+    rest: Sequence[AtRest] | None = None,  # None if all bodies stand upright
+    # rotations to both sides at which each body but the first overturns, with all above it, if
+    # these are checked [rad]
     limits: Sequence[tuple[float, float]] = (),
-    ties: Sequence[ChainLink] = (),
+    ties: Sequence[ChainLink] = (),  # links between points of bodies, or to the ground
+    # height at which the highest body starts at a rotation, if not that for its weight alone
     start_height: Callable[[float], float] | None = None,
+    # static, kinetic and impulsive, of each base: infinite for one that cannot slip, empty if none
     frictions: Sequence[tuple[float, float, float]] = (),
 ) -> ContactModel:
-    """Assemble the model of stacked bodies.
-
-    Parameters
-    ----------
-    bodies : sequence of ChainBody
-        From the top down.
-    mass : float
-        The reference mass, over which all masses and forces are given [kg].
-    rest : sequence of AtRest, or None
-        Placements of the bodies at rest; None if they all stand upright.
-    limits : sequence of tuple of float
-        Rotations to the left and to the right at which each body but the first overturns, with
-        all above it; unless given, the rotations of these bodies are not checked [rad].
-    ties : sequence of ChainLink
-        Links between points of bodies, or to the ground.
-    start_height : callable, optional
-        From a rotation of the highest body to the height at which it starts there; unless
-        given, that at which its base carries its weight.
-    frictions : sequence of tuple of float
-        Coefficients of friction of each base: static, kinetic and in impacts; empty where no base
-        can slip, infinite for one that cannot.
-    """
+    """Assemble the model of stacked bodies."""
     top, count = bodies[0].body, len(bodies)
     bare = bare_chain(bodies, ties)
     alone = with_friction(bare, frictions) if frictions else bare
     system = with_links(alone, ties) if ties else alone
     fastest, damping_rate = fastest_vibration(bodies, ties)
     carried = np.cumsum([body.mass for body in bodies])
-    starts = StartConditions(bodies, rest, start_height)
+    height_at = start_height or partial(_resting_height, bodies[0])
+    initial = partial(_initial, system, bodies, rest or [UPRIGHT] * count, height_at)
     if isinstance(system, LinkedBodies):
-        mode, state, _ = _initial(system, starts, Start())
+        mode, state, _ = initial(Start())
         system.store_rest_energies(mode, state)
     tied = visible_links(ties)
     scales = link_scales(system, ties) if isinstance(system, LinkedBodies) else []
@@ -151,7 +132,7 @@ def chain_model(
             body.mass * body.body.gravity * radius_of(body.body) * body.body.angle
             for body in bodies
         ),
-        initial=lambda start: _initial(system, starts, start),
+        initial=initial,
         rounding=None if all(is_rigid(body.base) for body in bodies) else rounding_estimate(
             sum(radius_of(body.body) for body in bodies),
             sum(body.base.settlement for body in bodies),
@@ -220,10 +201,7 @@ def visible_links(ties: Sequence[ChainLink]) -> int:
 
 
 def link_scales(system: LinkMechanics, ties: Sequence[ChainLink]) -> list[float]:
-    """Return typical sizes of the variables of links.
-
-    Each link has as many variables as the law that has the most.
-    """
+    """Return typical sizes of the variables of links, as many each as the law has with the most."""
     count = system.law.variables()
     return [size for tie in ties for size in (*tie.numbers.variable_scales, *[1.0] * count)[:count]]
 
@@ -256,87 +234,32 @@ def _unit_responses(bodies: Sequence[ChainBody]) -> Vector:
     return np.array([*places, *np.ones(len(bodies))])
 
 
-class StartConditions(NamedTuple):
-    """What the initial state is made from."""
-
-    bodies: Sequence[ChainBody]
-    rest: Sequence[AtRest] | None
-    start_height: Callable[[float], float] | None
-
-
-def _initial_placements(highest: BodyOnBase, starts: StartConditions, start: Start) -> list[AtRest]:
-    """Return rotations and heights of all bodies: at rest, but of the highest as `start` says."""
-    placements = list(starts.rest or [AtRest(0.0, 0.0)] * len(starts.bodies))
-    if start.rotation is None and start.vertical_displacement is None:
-        return placements
-    below = sum(placement.rotation for placement in placements[1:])
-    rotation = placements[0].rotation if start.rotation is None else start.rotation - below
-    height = start.vertical_displacement
-    if height is None and is_rigid(starts.bodies[0].base):
-        height = 0.0  # the contact prescribes it
-    elif height is None and starts.start_height is not None:
-        height = starts.start_height(rotation)
-    elif height is None:
-        attitude = highest.body.attitude(rotation)
-        lift = highest.body.left * attitude.sine, -highest.body.right * attitude.sine
-        height = highest.base.resting_height(*lift, ()) - attitude.rise
-    return [AtRest(rotation, height), *placements[1:]]
+def _resting_height(highest: ChainBody, rotation: float) -> float:
+    """Return the height at which the base of the highest body carries its weight at a rotation."""
+    if is_rigid(highest.base):
+        return 0.0  # the contact prescribes it
+    attitude = highest.body.attitude(rotation)
+    lift = highest.body.left * attitude.sine, -highest.body.right * attitude.sine
+    return highest.base.law.resting_height(*lift, ()) - attitude.rise
 
 
-def _starting_contact(part: BodyOnBase, base: BaseNumbers, body: BodyState) -> int:
-    if not is_rigid(base):
-        return part.base.starting(part.body.base_line_at(body), ())
-    side = body.rotation or body.angular_velocity
-    return both_contacts(int(side > 0.0), int(side < 0.0))
-
-
-def _write_start(
-    system: Chain, k: int, body_mode: Mode, pin: float, body: BodyState, state: Vector,
-    memory: Vector,
-) -> None:  # fmt: skip
-    """Write place, velocities and held point of body `k` to state and memory."""
-    part, count = system.on_base(k), system.bodies()
-    n, i, x = BODY_DOF * count, BEFORE_HORIZONTAL * k, system.horizontal_of(k)
-    offset = system.row_value(k, at.UPRIGHT_OFFSET) if k + 1 < count else 0.0
-    state[i + ROTATION], state[i + VERTICAL] = body.rotation, body.vertical
-    state[n + i + ROTATION] = body.angular_velocity
-    state[n + i + VERTICAL] = body.vertical_velocity
-    memory[HELD_PLACE + k] = pin + offset
-    free = part.is_free(body_mode)
-    moves = isinstance(system, LinkedBodies) or k + 1 < count
-    attitude = part.body.attitude(body.rotation)
-    if moves or free:
-        state[x] = pin + offset + part.body.about_pin(pin, attitude)
-    if moves and not free:
-        reach = part.body.reach(pin, attitude)
-        state[n + x] = reach.derivative * body.angular_velocity
-
-
-def _initial(system: Chain, starts: StartConditions, start: Start) -> tuple[int, Vector, Vector]:
+def _initial(
+    system: Chain, bodies: Sequence[ChainBody], rest: Sequence[AtRest],
+    height_at: Callable[[float], float], start: Start,
+) -> tuple[int, Vector, Vector]:  # fmt: skip
     """Return mode, state and memory at the start: all at rest but body 0, as `start` says."""
-    count = len(starts.bodies)
+    count = len(bodies)
     state = np.zeros(2 * BODY_DOF * count + system.variables())
     memory = np.zeros(len(_memory_names(system)))
     system.reset_event(memory)
-    placements, mode = _initial_placements(system.on_base(0), starts, start), 0
-    for k, placement in enumerate(placements):
-        moving = k == 0
-        body = BodyState(
-            placement.rotation, placement.vertical, 0.0, start.angular_velocity if moving else 0.0,
-            start.vertical_velocity if moving else 0.0, 0.0,
-        )  # fmt: skip
-        # a body at rest upright has no side yet: it takes that of the body above
-        leaning_body = body
-        if body.rotation == 0.0 and k > 0:
-            leaning_body = body._replace(rotation=placements[k - 1].rotation)
-        part = system.on_base(k)
-        body_mode = part.mode_for_contact(
-            _starting_contact(part, starts.bodies[k].base, body), leaning_body
-        )
-        _write_start(
-            system, k, body_mode, part.initial_pin(body_mode, leaning_body), body, state, memory
-        )
-        mode = system.with_body_mode(mode, k, body_mode)
+    standing = [
+        StartingBody(system.on_base(k), body.base.law, body.offset if k + 1 < count else 0.0)
+        for k, body in enumerate(bodies)
+    ]
+    mode = write_start(
+        system, standing, starting_placements(rest, start, height_at), start, state, memory,
+        isinstance(system, LinkedBodies),
+    )  # fmt: skip
     if isinstance(system, RigidChain):
         system.project_onto_contacts(mode, state, memory)
     if isinstance(system, LinkedRigidChain):

@@ -284,11 +284,6 @@ class MovingBodies(ChainArray):
             work[i + at.NORMAL_FORCE] = sine * force_x + cosine * force_y
 
     @kernel
-    def energies(self, mode: int, state: Vector) -> Energies:
-        """Return the energies of all bodies and bases."""
-        return self.energies_of_bodies(mode, state)
-
-    @kernel
     def energies_of_bodies(self, mode: int, state: Vector) -> Energies:
         """Return energies of all bodies and bases; leaves the bodies' places in the workspace."""
         work = self.workspace()
@@ -306,6 +301,8 @@ class MovingBodies(ChainArray):
             elastic += stored
             change += more
         return Energies(kinetic, gravity, elastic, change)
+
+    energies = energies_of_bodies  # of systems with links: of these, too
 
     @inlined
     def rise_of(self, k: int, below: float, vertical: float, work: Vector) -> float:
@@ -369,11 +366,6 @@ class MovingBodies(ChainArray):
         self.apply_response(state)
 
     @inlined
-    def apply_response(self, state: Vector) -> None:
-        """Change the velocities by the last response to impulses."""
-        self.add_velocity_changes(state)
-
-    @inlined
     def add_velocity_changes(self, state: Vector) -> None:
         """Add the changes in `slopes` to the velocities; held points remain held exactly."""
         out, work, n = self.slopes(), self.workspace(), self.coordinates()
@@ -384,6 +376,8 @@ class MovingBodies(ChainArray):
                 arm = work[j * BODY_STRIDE + at.PIVOT_ARM]
                 rate = state[n + BEFORE_HORIZONTAL * j + ROTATION]
                 state[n + self.horizontal_of(j)] = arm * rate
+
+    apply_response = add_velocity_changes  # with rigid bases, their impulses are added up, too
 
     @kernel
     def velocities(self, state: Vector) -> Vector:

@@ -7,7 +7,7 @@ from typing import Final, cast
 
 from rockframe.compiled import Vector, kernel
 from rockframe.dynamics.chain.friction import SlippingChain
-from rockframe.dynamics.chain.model import AtRest, chain_model
+from rockframe.dynamics.chain.model import chain_model
 from rockframe.dynamics.chain.rigid_friction import SlippingRigidChain
 from rockframe.dynamics.chain.rows import BASE_COLUMNS
 from rockframe.dynamics.chain.system import Chain
@@ -21,6 +21,7 @@ from rockframe.dynamics.protocol import (
     Ground,
 )
 from rockframe.dynamics.stacked import COLUMNS, CONTACTS, LOWER, name_soil_event
+from rockframe.dynamics.starting import AtRest
 from rockframe.dynamics.vibrations import ChainBody
 
 CAP_COLUMNS: Final = 4
@@ -55,7 +56,7 @@ class OneSlips(OnCap, SlippingRigidChain):
 
 
 def block_on_cap(
-    block: ChainBody, cap: ChainBody, mass: float, rest: Sequence[AtRest] | None,
+    block: ChainBody, cap: ChainBody, mass: float, rest: Sequence[AtRest],
     frictions: Sequence[tuple[float, float, float]],
 ) -> ContactModel:  # fmt: skip
     """Assemble the model of a block on a cap, arguments as of :func:`chain`."""

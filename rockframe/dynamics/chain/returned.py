@@ -3,7 +3,8 @@
 First slopes, then guards and their rates, then columns.
 """
 
-from typing import TYPE_CHECKING, Any
+from collections.abc import Callable
+from typing import Any
 
 import numpy as np
 
@@ -16,28 +17,12 @@ class ReturnedArrays:
 
     __slots__ = ()
     rows: Vector
-
-    if TYPE_CHECKING:
-
-        def coordinates(self) -> int:
-            """Return the number of coordinates."""
-            raise NotImplementedError
-
-        def variables(self) -> int:
-            """Return the number of variables of first order."""
-            raise NotImplementedError
-
-        def guards(self) -> int:
-            """Return the number of guards."""
-            raise NotImplementedError
-
-        def columns(self) -> int:
-            """Return the number of columns."""
-            raise NotImplementedError
-
-        def returned_start(self) -> int:
-            """Return the index at which this workspace begins."""
-            raise NotImplementedError
+    # methods of the system
+    coordinates: Callable[[], int]
+    variables: Callable[[], int]
+    guards: Callable[[], int]
+    columns: Callable[[], int]
+    returned_start: Callable[[], int]  # index at which this workspace begins
 
     @inlined
     def slopes(self) -> Vector:
@@ -60,12 +45,9 @@ class ReturnedArrays:
         """Return the workspace for columns."""
         return view_of(self.rows, self.slopes_end() + 2 * self.guards(), self.columns())
 
-    def array_length(self) -> int:
-        """Return the length of the whole array."""
-        return self.slopes_end() + 2 * self.guards() + self.columns()
-
 
 def with_workspace(system: Any) -> Any:
     """Return a system with its workspace, added as zeros to what its array holds so far."""
-    missing = np.zeros(system.array_length() - len(system.rows))
+    length = system.slopes_end() + 2 * system.guards() + system.columns()
+    missing = np.zeros(length - len(system.rows))
     return system._replace(rows=np.concatenate([system.rows, missing]))

@@ -148,7 +148,7 @@ class ChainNumbers(NamedTuple):
     rows: Vector  # the rows of all bodies, then the workspace
 
 
-class ChainArray(ReturnedArrays, StateAccess, CalledBySteps, ChainNumbers):
+class ChainArray(StateAccess, ReturnedArrays, CalledBySteps, ChainNumbers):
     """Access to the rows and the workspace of a chain. A mixin of systems."""
 
     __slots__ = ()
@@ -204,10 +204,7 @@ class ChainArray(ReturnedArrays, StateAccess, CalledBySteps, ChainNumbers):
         matrix, states = (MAX_CONSTRAINTS * self.body_count) ** 2, 3 * BODY_DOF * self.body_count
         return self.constraints_end() + matrix + states + INPUTS_BEFORE_STATE
 
-    @inlined
-    def bodies_end(self) -> int:
-        """Return the index behind all that belongs to the bodies."""
-        return self.workspace_end()
+    bodies_end = workspace_end  # with friction, its coefficients follow
 
     @inlined
     def returned_start(self) -> int:
@@ -238,9 +235,11 @@ class ChainArray(ReturnedArrays, StateAccess, CalledBySteps, ChainNumbers):
 
     @inlined
     def body_mode_count(self) -> int:
-        """Return the number of modes of all bodies together."""
+        """Return the number of modes of all bodies together; some of these numbers do not occur."""
         k = self.body_count - 1
         return int(self.row_value(k, PLACE_VALUE)) * int(self.row_value(k, MODE_COUNT))
+
+    modes = body_mode_count
 
     @inlined
     def body_mode(self, mode: int, k: int) -> Mode:

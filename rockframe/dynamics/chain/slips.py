@@ -118,10 +118,7 @@ class SlippingBodies(Chain):
 
     @inlined
     def slip_event(self, k: int, old: int, new: int) -> int:
-        """Return the kind of event by which a body starts, stops or reverses its slip.
-
-        Or leaves its base, or a part of it, as friction changes.
-        """
+        """Return the kind of event by which a body's slip changes, or its contact by friction."""
         part, old_mode, new_mode = self.on_base(k), self.body_mode(old, k), self.body_mode(new, k)
         if part.flies(new_mode.contact):
             return events.SEPARATION

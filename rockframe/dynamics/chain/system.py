@@ -35,11 +35,6 @@ class Chain(MovingBodies):
         return self.body_guard_count()
 
     @kernel
-    def modes(self) -> int:
-        """Return the number of modes; some of these numbers do not occur."""
-        return self.body_mode_count()
-
-    @kernel
     def contact_state_of(self, mode: int, k: int) -> int:
         """Return the contact state of a body."""
         return self.on_base(k).contact_state(self.body_mode(mode, k))
@@ -167,13 +162,6 @@ class Chain(MovingBodies):
         return mode_after_disturbance(self, part, k, mode, state)
 
     @kernel
-    def observe(
-        self, mode: int, state: Vector, slope: Slope, ground: Ground, memory: Vector
-    ) -> Vector:
-        """Return motion and forces of each body in turn, from the top down, and of its base."""
-        return self.observe_bodies(mode, state, slope, ground, memory)
-
-    @kernel
     def observe_bodies(
         self, mode: int, state: Vector, slope: Slope, ground: Ground, memory: Vector
     ) -> Vector:
@@ -205,6 +193,8 @@ class Chain(MovingBodies):
             put(self.base_columns(k, mode, body), j + COLUMNS - BASE_COLUMNS, out)
             self.write_slip_columns(k, mode, state, memory, out)
         return out
+
+    observe = observe_bodies
 
     @inlined
     def write_slip_columns(

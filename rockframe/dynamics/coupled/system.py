@@ -175,10 +175,7 @@ class Coupled(Stacked, Pair):
     def contact_forces(
         self, mode: int, states: States, slope: Slope, ground: Ground
     ) -> ContactForces:
-        """Return the forces between ground, cap and block, from the accelerations.
-
-        Equation :eq:`eq-coupled`.
-        """
+        """Return the forces between ground, cap and block, from accelerations, :eq:`eq-coupled`."""
         geometry = self.geometry_of(mode, states)
         s, c, cap_rate = geometry.sine, geometry.cosine, states.lower.angular_velocity
         cap_x = slope[LOWER_HORIZONTAL]

@@ -73,11 +73,11 @@ def copy_to_lane(batch: Batch, row: Vector, lane: int, first: int, count: int) -
 
 
 @inlined
-def copy_to_row(batch: Batch, row: Vector, lane: int, first: int, count: int) -> None:
-    """Copy fields of a lane into a row."""
-    inside = lane_of(batch.data, first, lane)
+def copy_to_row(batch: Batch, row: Vector, lane: int, count: int) -> None:
+    """Copy the first fields of a lane into a row."""
+    inside = lane_of(batch.data, 0, lane)
     for i in range(count):
-        row[first + i] = inside[i]
+        row[i] = inside[i]
 
 
 @inlined
@@ -237,7 +237,7 @@ def continue_alone(batch: Batch, lane: int) -> None:
     """Run a lane's run alone to the end of its interval; start another one if it ends there."""
     shape = batch.shape
     row = view_of(batch.rows, batch.row_of_lane[lane] * shape.width, shape.width)
-    copy_to_row(batch, row, lane, 0, shape.state + shape.half)
+    copy_to_row(batch, row, lane, shape.state + shape.half)
     result = run_alone(batch, row)
     if result == at.PAUSED:
         return_to_lane(batch, row, lane, False)
