@@ -258,7 +258,7 @@ def _cautions(
     if decisive == critical or has_friction_limit(system.assembly):
         repeated = run(system.assembly, plan_at(decisive))
         cautions += {repeated.attrs["cautions"]} - {NONE}
-    return {"cautions": "; ".join(cautions) or NONE}
+    return {"cautions": "; ".join(cautions)} if cautions else {}
 
 
 def _scale_dataset(
