@@ -22,7 +22,7 @@ from rockframe.units import (
     to_si,
 )
 
-MAX_BODIES: Final = 12
+MAX_BODIES: Final = 15
 """Most bodies in a stack: the combined contact states of more exceed the range of integers."""
 _OFFSET: Final = "offset"
 

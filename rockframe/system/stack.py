@@ -477,7 +477,7 @@ def _refuse_many_modes(bases: Sequence[Component], slips: bool) -> None:
         raise AssemblyError([
             f"the contacts of {len(bases)} bodies on these bases have {count:.2g} combinations, "
             f"more than the {MAX_MODES:.2g} that can be numbered: give fewer bodies, or rigid "
-            "joints"
+            "joints without friction"
         ])  # fmt: skip
 
 

@@ -104,3 +104,20 @@ def test_halves_that_ties_press_together_move_as_one_block(base, rule):
     joined = run((halves, bases[base], *ties), motion, restraint=rule)
     one = run((COLUMN, bases[base]), motion, restraint=rule)
     check_same(joined, one, "rotation", 1e-7)  # an impulse opens the joint for microseconds
+
+
+@pytest.mark.parametrize("count", [2, 6, 15])
+def test_equal_drums_rock_as_one_block_until_their_first_impact(count):
+    """The joints above remain closed: their share of the overturning moment is smaller."""
+    joint, pulse = rf.RigidGround(), rf.GroundMotion.sine_pulse("1.6 m/s^2", "0.8 Hz")
+    drum = rf.Block(width="1.6 m", height="0.9 m", mass="2 t")
+    column = rf.Block(width="1.6 m", height=f"{0.9 * count!r} m", mass=f"{2 * count} t")
+    runs = [
+        rf.System(part, joint).simulate(
+            pulse.scaled(15.0 / count), duration="0.7 s", accuracy="reference"
+        )
+        for part in (rf.Stack(*[drum] * count, interfaces=joint), column)
+    ]
+    assert runs[0].event_time.values == pytest.approx(runs[1].event_time.values)
+    assert float(runs[1].peak_rotation) > 1e-3
+    np.testing.assert_allclose(runs[0].rotation, runs[1].rotation, rtol=0.0, atol=1e-12)

@@ -272,7 +272,7 @@ VALUES = {
     "rf.Stack(BLOCK, BLOCK)": "'interfaces'",
     "rf.Stack(BLOCK, BLOCK, interfaces=3)": "interfaces must be a list of bases",
     "rf.Stack(BLOCK, BLOCK, interfaces=[GROUND], offsets=3)": "offsets must be a list of lengths",
-    "rf.Stack(BLOCK, interfaces=[])": "it has 2 to 12 bodies, got 1",
+    "rf.Stack(BLOCK, interfaces=[])": "it has 2 to 15 bodies, got 1",
     "rf.Stack(BLOCK, GROUND, interfaces=[GROUND])": "a body of a stack is a Block",
     "rf.Stack.from_dict({'bodies': 3})": "bodies must be a list of descriptions, got 3",
     "rf.RockingFrame(BLOCK, columns='two', beam_mass='1 t')": "columns must be a whole number",

@@ -8,10 +8,9 @@ import xarray as xr
 
 import rockframe as rf
 from rockframe.components import stack
-from rockframe.dynamics.chain import rows
 from rockframe.dynamics.events import ContactState
 from rockframe.dynamics.protocol import MAX_MODES
-from rockframe.errors import AssemblyError, ComponentError, UnitsError
+from rockframe.errors import AssemblyError, ComponentError, RockframeError, UnitsError
 from rockframe.simulation.certify.perturbations import parameters
 from rockframe.system.assembly import assemble
 
@@ -65,7 +64,7 @@ def test_a_stack_is_changed_by_copying():
 @pytest.mark.parametrize(
     ("bodies", "options", "words"),
     [
-        ((STATUE,), {"interfaces": []}, "2 to 12 bodies, got 1"),
+        ((STATUE,), {"interfaces": []}, "2 to 15 bodies, got 1"),
         ((STATUE, PLINTH), {"interfaces": []}, "1 interfaces between them, got 0"),
         ((STATUE, JOINT), {"interfaces": [JOINT]}, "a body of a stack is a Block, got Two"),
         ((STATUE, PLINTH), {"interfaces": [PLINTH]}, "an interface is a base"),
@@ -114,11 +113,11 @@ def test_mode_number_encodes_the_mode_of_each_body(slips):
 
 @pytest.mark.long
 @pytest.mark.filterwarnings("ignore::rockframe.errors.RockframeWarning")
-@pytest.mark.parametrize("slips", [{}, {"friction": 0.6}])
-def test_twelve_drums_rock(slips):
-    joint, widths = rf.RigidGround(**slips), 0.97 ** np.arange(11, -1, -1)
+@pytest.mark.parametrize(("slips", "count"), [({}, stack.MAX_BODIES), ({"friction": 0.6}, 12)])
+def test_many_drums_rock(slips, count):
+    joint, widths = rf.RigidGround(**slips), 0.97 ** np.arange(count - 1, -1, -1)
     drums = [rf.Block(width=f"{width} m", height="0.9 m", mass="2 t") for width in widths]
-    system = rf.System(rf.Stack(*drums, interfaces=[joint] * 11), joint)
+    system = rf.System(rf.Stack(*drums, interfaces=joint), joint)
     pulse = rf.GroundMotion.sine_pulse("3 m/s^2", "1.5 Hz")
     run = system.simulate(pulse, duration="0.5 s", second_look=False)
     assert run.status == 0
@@ -126,8 +125,23 @@ def test_twelve_drums_rock(slips):
     assert run.energy_residual < 1e-6
 
 
-def test_mode_numbers_suffice_for_twelve_drums():
-    assert (2 * rows.RIGID_MODES) ** stack.MAX_BODIES <= MAX_MODES
+@pytest.mark.parametrize(
+    ("base", "most"),
+    [
+        (rf.RigidGround(), stack.MAX_BODIES),
+        (rf.RigidGround(friction=0.6), 12),
+        (rf.TwoSpringSupport(stiffness="20 MN/m", damping_ratio=0.1), 8),
+        (rf.TwoSpringSupport(stiffness="20 MN/m", damping_ratio=0.1, friction=0.6), 7),
+        (rf.WinklerSoil(stiffness="900 MPa", damping_ratio=0.1), 13),
+        (rf.WinklerSoil(stiffness="900 MPa", damping_ratio=0.1, friction=0.6), 11),
+    ],
+)
+def test_as_many_bodies_as_mode_numbers_suffice_for(base, most):
+    drum = rf.Block(width="1 m", height="0.9 m", mass="2 t")
+    system = rf.System(rf.Stack(*[drum] * most, interfaces=base), base)
+    assert system.assembly.model.system.modes() <= MAX_MODES
+    with pytest.raises(RockframeError, match=r"numbered|2 to 15 bodies"):
+        rf.System(rf.Stack(*[drum] * (most + 1), interfaces=base), base).describe()
 
 
 def test_no_slope_under_a_stack():
