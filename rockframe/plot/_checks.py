@@ -1,7 +1,7 @@
 """The datasets that figures are drawn from, and messages on anything else."""
 
 import warnings
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from inspect import signature
 from os import PathLike
@@ -222,11 +222,19 @@ def _checked_kind(value: object, function: str, kind: DatasetKind) -> xr.Dataset
     missing = ", ".join(repr(name) for name in needed if name not in value.variables)
     if missing:
         raise _mismatch_error(function, f"one that lacks {missing}; give it the whole dataset")
-    for dim in kind.along:
-        if not value.sizes.get(dim):
+    check_along(value, function, kind.along)
+    return value
+
+
+def check_along(dataset: xr.Dataset, function: str, dims: Sequence[str], least: int = 1) -> None:
+    """Refuse a dataset without values, or with too few, along some dimensions."""
+    for dim in dims:
+        count = dataset.sizes.get(dim, 0)
+        if 0 < count < least:
+            raise _mismatch_error(function, f"one with {count} value along {dim!r}")
+        if not count:
             what = f"one without values along {dim!r}; to draw a single one, pick it with a list"
             raise _mismatch_error(function, f"{what}, for example dataset.isel({dim}=[0])")
-    return value
 
 
 def _mismatch_error(function: str, what: str) -> SchemaError:

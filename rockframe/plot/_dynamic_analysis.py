@@ -21,7 +21,7 @@ from rockframe.plot._axes import (
     text_colour,
     variable_label,
 )
-from rockframe.plot._checks import draws, figure_data
+from rockframe.plot._checks import check_along, draws, figure_data
 from rockframe.plot._panels import (
     Axes,
     AxesLike,
@@ -107,6 +107,7 @@ def dynamic_analysis(
     'peak ground acceleration [g]'
     """
     dataset = figure_data(dataset, "dynamic_analysis")
+    check_along(dataset, "dynamic_analysis", ["scale"], least=2)
     dataset = _single_structure(dataset, "capacity_scale", "dynamic_analysis", "analysis")
     data = figure_data(dataset, "dynamic_analysis", units)
     names = chosen_panels(panels, _PANELS, "dynamic_analysis")
@@ -242,9 +243,10 @@ def fractile_curves(
     'peak relative rotation [-]'
     """
     data = figure_data(dataset, "fractile_curves", units)
+    name = str(data.attrs["intensity"])
+    check_along(data, "fractile_curves", [name])
     sheet = make_single_panel(ax, "fractile_curves", (6.0, 4.3))
     axes = sheet.axes
-    name = str(data.attrs["intensity"])
     up, levels = data[name].to_numpy(), data["response_level"].to_numpy()
     runs = data["motion_response"].transpose("motion", name).to_numpy()
     finite = runs[np.isfinite(runs)]

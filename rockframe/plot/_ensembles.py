@@ -259,6 +259,9 @@ def fragility(
     alone = [dim for dim, size in data["fragility_status"].sizes.items() if size == 1]
     data = data.isel({dim: 0 for dim in alone if dim != "limit_state"})
     measures = measures_of(data)
+    if not measures:
+        msg = "rf.plot.fragility needs a fragility over intensities, got one at a single intensity"
+        raise SchemaError(msg)
     states = [data.isel(limit_state=k) for k in range(data.sizes["limit_state"])]
     structures = [str(dim) for dim in states[0]["fragility_status"].dims]
     count = int(np.prod([data.sizes[dim] for dim in structures]))

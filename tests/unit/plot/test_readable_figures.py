@@ -135,3 +135,15 @@ def test_a_part_without_an_axis_of_its_figure_is_refused(name):
             with pytest.raises(SchemaError, match=message):
                 draw(found.isel({dim: picked}))
     assert not plt.get_fignums()
+
+
+def test_results_at_a_single_intensity_are_refused():
+    runs = rf.sweep(SYSTEM, MOTIONS, scale=[0.5, 1.0, 2.0], progress=False)
+    curves, fit = rf.fractile_curves(runs, "PGA"), rf.fragility(COUNTS, "PGA")
+    with pytest.raises(SchemaError, match="one without values along 'peak_ground_acceleration'"):
+        rf.plot.fractile_curves(curves.isel(peak_ground_acceleration=0))
+    with pytest.raises(SchemaError, match="got one at a single intensity"):
+        rf.plot.fragility(fit.isel(peak_ground_acceleration=0))
+    found = rf.incremental_dynamic_analysis(SYSTEM, MOTIONS, scale=[0.5, 1.0], progress=False)
+    with pytest.raises(SchemaError, match="got one with 1 value along 'scale'"):
+        rf.plot.dynamic_analysis(found.isel(scale=[0]))
