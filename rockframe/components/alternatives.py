@@ -25,6 +25,8 @@ class OneOf:
         Names of parameters; those of a tuple are given together.
     required : bool
         Whether one way must be used.
+    hint : str
+        What a message adds where none is.
 
     Examples
     --------
@@ -36,12 +38,14 @@ class OneOf:
 
     ways: tuple[tuple[str, ...], ...]
     required: bool
+    hint: str
 
     @with_hints()
-    def __init__(self, *ways: str | tuple[str, ...], required: bool = True) -> None:
+    def __init__(self, *ways: str | tuple[str, ...], required: bool = True, hint: str = "") -> None:
         split = tuple((way,) if isinstance(way, str) else way for way in ways)
         object.__setattr__(self, "ways", split)
         object.__setattr__(self, "required", required)
+        object.__setattr__(self, "hint", hint)
 
     def check(self, values: Mapping[str, object], owner: str) -> None:
         """Refuse arguments that give the quantity twice, or not at all.
@@ -68,7 +72,8 @@ class OneOf:
             msg = f"{owner}: give {heads}{found}"
             raise ComponentError(msg)
         if self.required and not taken:
-            msg = f"{owner}: give {heads}; {'neither' if pair else 'none'} was given"
+            hint = f"; {self.hint}" if self.hint else ""
+            msg = f"{owner}: give {heads}; {'neither' if pair else 'none'} was given{hint}"
             raise ComponentError(msg)
         for way in self.ways:
             present = [name for name in way if values.get(name) is not None]

@@ -1,6 +1,5 @@
 """Bases under bodies: rigid ground, pads, soil, and a cap between building and soil."""
 
-from collections.abc import Mapping
 from dataclasses import dataclass
 from enum import StrEnum
 from typing import ClassVar, Literal, Self, TypeAlias
@@ -151,9 +150,12 @@ class TwoSpringSupport(Component):
 
     noun: ClassVar[str] = "base"
     alternatives: ClassVar[tuple[OneOf, ...]] = (
-        OneOf("frequency_ratio", "stiffness"),
+        OneOf(
+            "frequency_ratio", "stiffness",
+            hint="rigid contact with friction or a restitution is RigidGround(...)",
+        ),
         OneOf("damping_ratio", "damping"),
-    )
+    )  # fmt: skip
 
     frequency_ratio: Ratio[None] = Ratio(
         POSITIVE,
@@ -184,15 +186,6 @@ class TwoSpringSupport(Component):
 
     friction: Ratio[None] = _static_friction("the block")
     kinetic_friction: Ratio[None] = _kinetic_friction()
-
-    def _check(self, values: Mapping[str, object], owner: str) -> None:
-        if values["frequency_ratio"] is None and values["stiffness"] is None:
-            msg = (
-                f"{owner}: give frequency_ratio or stiffness; neither was given; rigid contact "
-                "with friction or a restitution is RigidGround(...)"
-            )
-            raise ComponentError(msg)
-        super()._check(values, owner)
 
     def _numbers(self, numbers: SIValues) -> SIValues:
         return _check_frictions("TwoSpringSupport", numbers)

@@ -2,11 +2,11 @@
 
 import json
 from collections.abc import Iterable, Mapping
-from typing import Any, Self
+from typing import Any, ClassVar, Self
 
 import xarray as xr
 
-from rockframe.components.alternatives import changed_arguments
+from rockframe.components.alternatives import OneOf, changed_arguments
 from rockframe.components.block import Block
 from rockframe.components.frame_building import Building, make_building
 from rockframe.components.frame_members import Member, make_members_table, member_outlines
@@ -52,6 +52,14 @@ class FrameEquivalent(Block):
     >>> round(frame.overturning_angle.m_as("rad"), 3)
     0.418
     """
+
+    alternatives: ClassVar[tuple[OneOf, ...]] = (
+        *Block.alternatives,  # at most one of them; and one at least:
+        OneOf(
+            "shape_factor", "inertia",
+            hint="a frame is hollow, so that the solid rectangle's 3 is not assumed",
+        ),
+    )  # fmt: skip
 
     shape_factor: Ratio[Derived] = Ratio(
         POSITIVE, doc="mu of Eq. (22).", default=DERIVED, example="2.5"
@@ -358,15 +366,6 @@ class FrameEquivalent(Block):
         frame._set_arguments(building.block_arguments(owner))
         object.__setattr__(frame, "_building", building)
         return frame
-
-    def _check(self, values: Mapping[str, object], owner: str) -> None:
-        if values["shape_factor"] is None and values["inertia"] is None:
-            msg = (
-                f"{owner}: give shape_factor or inertia, neither was given; a frame "
-                "is hollow, so that the solid rectangle's 3 is not assumed"
-            )
-            raise ComponentError(msg)
-        super()._check(values, owner)
 
     def _cautions(self) -> list[str]:
         return super()._cautions() if self._building is None else self._building.cautions()
